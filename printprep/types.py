@@ -1,0 +1,240 @@
+"""The frozen values that cross from one room of printprep to the next.
+
+Axis order is x, y, z; z is up; the bed is z = 0.  Lengths are mm, volumes mm³, masses g, angles
+degrees, densities g/cm³.  ``eq=False`` where a field is an array or a mesh: identity is meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from manifold3d import Manifold
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+    Int = NDArray[np.int64]
+    Bool = NDArray[np.bool_]
+
+Severity = Literal["info", "warning", "error"]
+Rung = Literal["as-is", "union", "meshlab", "remesh"]
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Triangles as they came in, welded, in mm, z up, sitting on the bed, centred on x = y = 0.
+
+    vertices : (n, 3) float64 mm;  faces : (m, 3) int64, counter-clockwise seen from outside.
+    placement : (4, 4) float64, file coordinates → these coordinates.
+    name : the file's stem (never a path).
+    """
+
+    vertices: Float
+    faces: Int
+    placement: Float
+    name: str
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What it took to make a solid of the model.
+
+    rung : the step of the ladder that sufficed.
+    actions : one short sentence each, in order; empty when rung is "as-is".
+    moved_max_mm, moved_mean_mm : how far the model's surface lies from the solid's, over samples.
+    resolution_mm : cell size of the remesh, None on the other rungs.
+    """
+
+    rung: Rung
+    actions: tuple[str, ...] = ()
+    moved_max_mm: float = 0.0
+    moved_mean_mm: float = 0.0
+    resolution_mm: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A valid manifold of positive volume (shells inside it are true voids), on the bed, in mm."""
+
+    manifold: Manifold
+    name: str
+    repair: Repair
+    placement: Float
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Integrals over a closed mesh at unit density.
+
+    volume_mm3; centre_mm : (x, y, z); inertia_mm5 : 3×3 nested tuple about the centre of mass
+    (multiply by g/mm³ for g·mm²).
+    """
+
+    volume_mm3: float
+    centre_mm: tuple[float, float, float]
+    inertia_mm5: tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing the user should know.
+
+    rule : stable id of the rule;  value, limit : numbers in ``unit`` or None;
+    at_mm : where, or None;  fix : the way out, one sentence.
+    """
+
+    rule: str
+    severity: Severity
+    message: str
+    fix: str | None = None
+    value: float | None = None
+    limit: float | None = None
+    unit: str | None = None
+    at_mm: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """A regular grid of cell centres.
+
+    origin_mm : (3,) centre of cell (0, 0, 0);  pitch_mm : edge of a cubic cell;
+    shape : (nx, ny, nz).
+    """
+
+    origin_mm: Float
+    pitch_mm: float
+    shape: tuple[int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Domain:
+    """What may change and what may not, on one grid; arrays of shape ``grid.shape``.
+
+    depth_mm : float64, signed distance to the model's surface, positive inside; exact in the
+    narrow band around the wall's inner face, elsewhere at least on the right side of it.
+    shell, interior, base, free : bool, by cell centre (free = interior; the base is geometry).
+    share : float64 in [0, 1], the part of each cell that lies deeper than the wall, the weight of
+    a free voxel in the linear program.
+    body : int64, −1 outside, else which disjoint body of the solid the cell belongs to.
+    """
+
+    grid: Grid
+    depth_mm: Float
+    shell: Bool
+    interior: Bool
+    base: Bool
+    free: Bool
+    share: Float
+    body: Int
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The half-space {x : normal · x > offset_mm} that stays empty; below it is filled."""
+
+    normal: tuple[float, float, float]
+    offset_mm: float
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Proof that no lighter filling of the same voxels stands at the same lean.
+
+    voxel_mass_g : mass of the filling found;  bound_g : no filling weighs less (weak duality);
+    gap : (voxel_mass_g − bound_g) / voxel_mass_g.
+    """
+
+    voxel_mass_g: float
+    bound_g: float
+    gap: float
+
+
+@dataclass(frozen=True, eq=False)
+class Density:
+    """The optimized interior.
+
+    rho : float64 of the grid's shape, 1 solid, 0 empty, over the whole model.
+    planes : one per body: the plane above which the cavity lies, or None when nothing is filled.
+    filled : one bool per body, True when that body stays solid throughout.
+    aim_deg : the lean solved for (margin included), None for the paper's objective.
+    reachable_deg : largest lean any filling reaches, None when the lean asked for is feasible.
+    """
+
+    rho: Float
+    planes: tuple[Plane | None, ...]
+    filled: tuple[bool, ...]
+    aim_deg: float | None
+    reachable_deg: float | None
+    certificate: Certificate | None
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """New material around the feet: a seat (columns down to the bed) and a grown footprint."""
+
+    manifold: Manifold
+    seat_mm: float
+    growth_mm: float
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What is printed.
+
+    manifold : the whole part, cavities as inverted shells;  outside : model with its base, with
+    the voids the model already had;  cavities : positive solids that were taken out, one each.
+    """
+
+    manifold: Manifold
+    outside: Manifold
+    cavities: tuple[Manifold, ...]
+    base: Base | None
+    name: str
+    placement: Float
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """How a part stands on the bed; the weakest body of it when there are several.
+
+    support_polygon_mm : (k, 2) counter-clockwise hull of the contact, empty when nothing touches;
+    contact_area_mm2 : of the section itself, not of its hull;
+    tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself,
+    None when it has no contact;
+    weakest_edge : index of the edge from vertex i to i + 1, with its outward azimuth.
+    """
+
+    support_polygon_mm: Float
+    contact_area_mm2: float
+    centre_of_mass_mm: tuple[float, float, float]
+    tilt_deg: float | None
+    weakest_edge: int | None
+    weakest_azimuth_deg: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class HollowResult:
+    """Everything ``hollow`` found out.  Masses are geometric volume times material density."""
+
+    model: Model
+    solid: Solid
+    part: Part
+    profile: Any
+    density: Density
+    stability_solid: Stability
+    stability: Stability
+    lean_deg: float
+    solid_mass_g: float
+    mass_g: float
+    wall_min_mm: float | None
+    findings: tuple[Finding, ...]
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+    def write(self, path: Any) -> None:
+        """Write the part; the suffix chooses the format (.3mf carries the settings)."""
+        from printprep.report.export import write_part
+
+        write_part(self, path)
