@@ -1,0 +1,70 @@
+"""What every test may ask for: the model collection, the real slicer."""
+
+from __future__ import annotations
+
+import csv
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("default", deadline=None, derandomize=True)
+settings.load_profile("default")
+
+ROOT = Path(__file__).resolve().parent.parent
+MODELS = Path(os.environ.get("PRINTPREP_MODELS", ROOT.parent / "shared" / "models"))
+
+
+def _required() -> bool:
+    return os.environ.get("PRINTPREP_REQUIRE_TOOLS") == "1"
+
+
+@dataclass(frozen=True)
+class CatalogueModel:
+    """One row of the collection: ``path`` to the file, ``up`` as the command line takes it."""
+
+    path: Path
+    up: str
+    may_ship: bool
+
+
+@pytest.fixture(scope="session")
+def models_dir() -> Path:
+    """Folder of the shared model collection (set PRINTPREP_MODELS to put it elsewhere)."""
+    if not (MODELS / "catalogue.csv").is_file():
+        pytest.skip("the shared model collection is not here")
+    return MODELS
+
+
+@pytest.fixture(scope="session")
+def dev_models(models_dir: Path) -> dict[str, CatalogueModel]:
+    """The real models by file stem."""
+    with (models_dir / "catalogue.csv").open(encoding="utf-8", newline="") as handle:
+        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
+    return {
+        Path(row["file"]).stem: CatalogueModel(
+            models_dir / "dev" / row["file"], row["up"], row["may_ship"] == "yes"
+        )
+        for row in rows
+    }
+
+
+@pytest.fixture(scope="session")
+def samples_dir() -> Path:
+    """The samples that ship with the project."""
+    return ROOT / "samples"
+
+
+@pytest.fixture(scope="session")
+def prusa_slicer() -> Path:
+    """The real slicer: skipped without it on a user's machine, a failure in CI."""
+    found = shutil.which("prusa-slicer")
+    if found is None:
+        message = "prusa-slicer is not installed"
+        if _required():
+            pytest.fail(message)
+        pytest.skip(message)
+    return Path(found)
