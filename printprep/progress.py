@@ -1,0 +1,63 @@
+"""How a long run tells what it is doing: one stage at a time, on stderr, or not at all.
+
+The pipeline opens ``progress.stage(name)`` around each of its stages, by the names in ``STAGES``.
+Nothing here measures: seconds are the pipeline's own, so that silence costs nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from types import MappingProxyType
+from typing import Protocol
+
+STAGES: Mapping[str, str] = MappingProxyType(
+    {
+        "read": "Reading the model",
+        "repair": "Making it a solid",
+        "voxelize": "Measuring how deep the material is",
+        "base": "Choosing what it stands on",
+        "solve": "Finding the lightest filling that stands",
+        "cavity": "Cutting the cavity",
+        "check": "Checking walls, stand and surface",
+    }
+)
+
+
+class Progress(Protocol):
+    """Whatever wants to know which stage runs."""
+
+    def stage(self, name: str) -> AbstractContextManager[None]:
+        """A context held open while stage ``name`` (a key of ``STAGES``) runs."""
+        ...
+
+
+class Silent:
+    """Says nothing: the default of the Python interface, of ``-q`` and of a redirected stderr."""
+
+    def stage(self, name: str) -> AbstractContextManager[None]:
+        del name
+        return nullcontext()
+
+
+class Spinner:
+    """One line on stderr that moves while a stage runs and leaves no trace."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        self._console = Console(stderr=True)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        with self._console.status(f"{STAGES.get(name, name)} …"):
+            yield
+
+
+SILENT: Progress = Silent()
+
+
+def for_terminal(*, quiet: bool = False) -> Progress:
+    """A spinner when a person watches stderr, silence otherwise."""
+    return SILENT if quiet or not sys.stderr.isatty() else Spinner()
