@@ -160,7 +160,7 @@ def profile_source(name: str | Path) -> str:
 
 def load_profile(
     name_or_path: str | Path | Profile = DEFAULT_PROFILE,
-    overrides: Mapping[str, object] = {},  # noqa: B006 (never written to)
+    overrides: Mapping[str, object] = {},
 ) -> Profile:
     """The profile of that name, at that path, or given; with single keys overridden.
 

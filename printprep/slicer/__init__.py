@@ -1,0 +1,1 @@
+"""The slicer on this machine, driven and read."""

@@ -1,0 +1,1 @@
+"""3MF files: a tolerant reader and a strict writer."""

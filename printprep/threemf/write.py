@@ -1,0 +1,213 @@
+"""Write a 3MF that PrusaSlicer prints as meant and lib3mf reads strictly without a warning.
+
+One item is one object: one mesh, made of volumes that follow one another, each with its own range
+of vertices and triangles.  What a slicer is to do with them stands in PrusaSlicer's own
+Metadata/Slic3r_PE_model.config.  Cavities belong into the mesh of a ModelPart, as inverted shells.
+
+There is never a print config in the file and never a post_process key: both can carry commands
+that a slicer runs when it opens the file.
+
+Source: 3MF core specification 1.3; PrusaSlicer's src/libslic3r/Format/3mf.cpp for the config.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from printprep.errors import UsageError
+from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
+from printprep.threemf.text import clean, escape, triangle_lines, vertex_lines
+
+if TYPE_CHECKING:
+    from printprep.types import Float, Int
+
+VolumeKind = Literal[
+    "ModelPart", "NegativeVolume", "ParameterModifier", "SupportBlocker", "SupportEnforcer"
+]
+
+_CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+_SLIC3R = "http://schemas.slic3r.org/3mf/2017/06"
+# The names the core specification gives a meaning; its two dates are left out, so that the same
+# part gives the same file.
+_METADATA = (
+    "Title",
+    "Designer",
+    "Description",
+    "Copyright",
+    "LicenseTerms",
+    "Rating",
+    "Application",
+)
+
+_ATTACHMENT = re.compile(r"Metadata/[A-Za-z0-9_-]+\.(json|txt)")
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """A closed mesh and what it is for.
+
+    vertices : (n, 3) mm;  faces : (m, 3) indices into them, counter-clockwise seen from outside;
+    settings : slicer keys for this volume alone (of use on a ParameterModifier).
+    """
+
+    name: str
+    vertices: Float
+    faces: Int
+    kind: VolumeKind = "ModelPart"
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One object on the bed, which is z = 0; the slicer does not move it there.
+
+    settings : slicer keys of the object;  translation_mm : where its origin goes, (x, y, z).
+    """
+
+    name: str
+    volumes: Sequence[Volume]
+    settings: Mapping[str, str] = field(default_factory=dict)
+    translation_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def write_3mf(
+    items: Sequence[Item],
+    *,
+    thumbnail_png: bytes | None = None,
+    attachments: Mapping[str, bytes] | None = None,
+    metadata: Mapping[str, str] | None = None,
+) -> bytes:
+    """The 3MF file as bytes; the same arguments give the same bytes.
+
+    attachments : part name ("Metadata/printprep.json") → content, JSON or text;
+    metadata : name of the core specification ("Title", "Application", …) → text.
+
+    Raises UsageError for a setting no slicer file may carry, ValueError for geometry or a part that
+    would make an invalid file.
+    """
+    if not items:
+        raise ValueError("a 3MF needs at least one item")
+    for item in items:
+        _check(item)
+    parts = {
+        MODEL_PART: _model(items, metadata or {}),
+        CONFIG_PART: _config(items),
+    }
+    if thumbnail_png is not None:
+        parts[THUMBNAIL_PART] = thumbnail_png
+    for name, content in sorted((attachments or {}).items()):
+        if not _ATTACHMENT.fullmatch(name):
+            raise ValueError(f"{name!r} cannot be attached: Metadata/NAME.json or .txt is meant")
+        parts[name] = content
+    return pack(parts)
+
+
+def _check(item: Item) -> None:
+    if not any(volume.kind == "ModelPart" for volume in item.volumes):
+        raise ValueError(f"item {item.name!r} has no ModelPart: slicers refuse such an object")
+    if not np.isfinite(item.translation_mm).all():
+        raise ValueError(f"item {item.name!r} has a translation that is not finite")
+    _check_settings(item.name, item.settings)
+    for volume in item.volumes:
+        vertices, faces = volume.vertices, volume.faces
+        if volume.kind not in get_args(VolumeKind):
+            raise ValueError(f"volume {volume.name!r} is of an unknown kind {volume.kind!r}")
+        if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
+            raise ValueError(f"volume {volume.name!r} is not (n, 3) vertices and (m, 3) faces")
+        if not len(faces):
+            raise ValueError(f"volume {volume.name!r} has no triangles")
+        with np.errstate(over="ignore"):
+            finite = np.isfinite(vertices.astype(np.float32)).all()
+        if not finite:
+            raise ValueError(f"volume {volume.name!r} has coordinates that are not finite float32")
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            raise ValueError(f"volume {volume.name!r} has an index beyond its vertices")
+        if (faces == np.roll(faces, 1, axis=1)).any():
+            raise ValueError(f"volume {volume.name!r} has a triangle that names a vertex twice")
+        _check_settings(volume.name, volume.settings)
+
+
+def _check_settings(owner: str, settings: Mapping[str, str]) -> None:
+    for key, value in settings.items():
+        if key == "post_process":
+            raise UsageError(
+                f"{owner!r} must not carry post_process: a slicer runs it as a command",
+                "put post-processing into the slicer's own print settings",
+            )
+        # name and the volume's placement are keys of the same list, and written by this module
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", key) or key in ("name", "volume_type", "matrix"):
+            raise UsageError(f"{owner!r}: {key!r} is not a setting of a slicer's object")
+        if clean(value) != value:
+            raise UsageError(f"{owner!r}: {key} holds characters that a 3MF cannot")
+
+
+def _model(items: Sequence[Item], metadata: Mapping[str, str]) -> bytes:
+    unknown = sorted(set(metadata) - set(_METADATA))
+    if unknown:
+        raise ValueError(f"no such 3MF metadata: {', '.join(unknown)}")
+    chunks = [
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}" xmlns:slic3rpe="{_SLIC3R}">\n'
+        ' <metadata name="slic3rpe:Version3mf">1</metadata>\n'.encode()
+    ]
+    chunks += [
+        f' <metadata name="{name}">{escape(metadata[name])}</metadata>\n'.encode()
+        for name in sorted(metadata)
+    ]
+    chunks.append(b" <resources>\n")
+    for number, item in enumerate(items, 1):
+        chunks += _object(number, item)
+    chunks.append(b" </resources>\n <build>\n")
+    for number, item in enumerate(items, 1):
+        x, y, z = (f"{float(value):.9g}" for value in item.translation_mm)
+        move = f"1 0 0 0 1 0 0 0 1 {x} {y} {z}"
+        chunks.append(f'  <item objectid="{number}" transform="{move}"/>\n'.encode())
+    chunks.append(b" </build>\n</model>\n")
+    return b"".join(chunks)
+
+
+def _object(number: int, item: Item) -> list[bytes]:
+    head = f'  <object id="{number}" type="model" name="{escape(item.name)}">\n   <mesh>\n'
+    chunks = [head.encode(), b"    <vertices>\n"]
+    chunks += [vertex_lines(volume.vertices) for volume in item.volumes]
+    chunks.append(b"    </vertices>\n    <triangles>\n")
+    first = 0
+    for volume in item.volumes:
+        chunks.append(triangle_lines(volume.faces, first))
+        first += len(volume.vertices)
+    chunks.append(b"    </triangles>\n   </mesh>\n  </object>\n")
+    return chunks
+
+
+def _config(items: Sequence[Item]) -> bytes:
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<config>"]
+    for number, item in enumerate(items, 1):
+        lines.append(f' <object id="{number}" instances_count="1">')
+        lines += _keys("  ", "object", {"name": item.name, **_sorted(item.settings)})
+        first = 0
+        for volume in item.volumes:
+            last = first + len(volume.faces) - 1  # inclusive
+            lines.append(f'  <volume firstid="{first}" lastid="{last}">')
+            own = {"name": volume.name, "volume_type": volume.kind}
+            lines += _keys("   ", "volume", {**own, **_sorted(volume.settings)})
+            lines.append("  </volume>")
+            first = last + 1
+        lines.append(" </object>")
+    lines.append("</config>\n")
+    return "\n".join(lines).encode()
+
+
+def _sorted(settings: Mapping[str, str]) -> dict[str, str]:
+    return {key: settings[key] for key in sorted(settings)}
+
+
+def _keys(indent: str, owner: str, values: Mapping[str, str]) -> list[str]:
+    return [
+        f'{indent}<metadata type="{owner}" key="{key}" value="{escape(value)}"/>'
+        for key, value in values.items()
+    ]
