@@ -1,0 +1,1 @@
+"""Triangles in mm: read, placed, made a solid, measured, written."""

@@ -1,0 +1,108 @@
+"""From the file's coordinates to the printer's: up is +z, sizes are mm, the bed is z = 0."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import UsageError
+from printprep.types import Model
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.mesh.read import RawMesh
+
+    Float = NDArray[np.float64]
+
+# Proper rotations (determinant +1) by quarter turns that take the named file axis to +z.  About x
+# for ±y, about y for ±x, half a turn about x for −z: the shortest turn in each case.
+_TURNS: dict[str, tuple[tuple[int, int, int], ...]] = {
+    "+x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
+    "-x": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
+    "+y": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
+    "-y": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
+    "+z": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "-z": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
+}
+
+
+def rotation(up: str) -> Float:
+    """(3, 3) proper rotation that takes the file axis ``up`` (x, y, z with optional sign) to +z.
+
+    Raises UsageError for anything else.
+    """
+    axis = up.strip().lower()
+    turn = _TURNS.get(axis if axis[:1] in ("+", "-") else f"+{axis}")
+    if turn is None:
+        raise UsageError(
+            f"--up {up!r} names no axis.", "Use x, y or z, with + or − before it, for example +y."
+        )
+    return np.array(turn, dtype=np.float64)
+
+
+def place(
+    raw: RawMesh,
+    *,
+    up: str = "+z",
+    scale: float | None = None,
+    height_mm: float | None = None,
+    size_mm: float | None = None,
+) -> Model:
+    """Turn, scale and seat a mesh: bounding box centred on x = y = 0, lowest point on z = 0.
+
+    up : the axis of the mesh that shall point up.  At most one of ``scale`` (a factor),
+    ``height_mm`` (extent along z once turned) and ``size_mm`` (longest side of the bounding box).
+
+    Raises
+    ------
+    UsageError : two of them at once, one that is not a positive number, an unknown axis, or a
+        height asked of a mesh that has none.
+    """
+    turn = rotation(up)
+    turned = raw.vertices @ turn.T
+    extents = turned.max(axis=0) - turned.min(axis=0)
+    factor = _factor(extents, scale, height_mm, size_mm)
+    scaled = turned * factor
+    low, high = scaled.min(axis=0), scaled.max(axis=0)
+    shift = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+    step = np.eye(4)
+    step[:3, :3] = factor * turn
+    step[:3, 3] = shift
+    return Model(
+        vertices=np.ascontiguousarray(scaled + shift),
+        faces=raw.faces,
+        placement=step @ raw.from_file,
+        name=raw.name,
+    )
+
+
+def _factor(
+    extents: Float, scale: float | None, height_mm: float | None, size_mm: float | None
+) -> float:
+    given = {
+        name: value
+        for name, value in (("--scale", scale), ("--height", height_mm), ("--size", size_mm))
+        if value is not None
+    }
+    if len(given) > 1:
+        raise UsageError(
+            f"{' and '.join(given)} exclude each other.", "Give the size in one way only."
+        )
+    for name, value in given.items():
+        if not (math.isfinite(value) and value > 0):
+            raise UsageError(f"{name} {value:g} is not a positive number.")
+    if scale is not None:
+        return float(scale)
+    target, extent, what = (
+        (height_mm, float(extents[2]), "height")
+        if height_mm is not None
+        else (size_mm, float(extents.max()), "size")
+    )
+    if target is None:
+        return 1.0
+    if extent <= 0:
+        raise UsageError(f"The model has no {what} to scale to {target:g} mm: it is flat.")
+    return float(target) / extent
