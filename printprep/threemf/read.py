@@ -1,0 +1,188 @@
+"""Read the solid of a 3MF from whichever program: all that its build prints, in mm, in one mesh.
+
+What counts: meshes of objects of type "model" that a printable item of the build puts on the bed,
+directly or through components, with every transform applied.  Support objects are left out, and so
+are volumes that a slicer keeps in the same object but does not print as such (modifiers, support
+blockers and enforcers, by PrusaSlicer's, BambuStudio's and OrcaSlicer's configs).  A *negative*
+volume would change the shape: such a file is refused, rather than read as something else.
+
+Tolerated, because real files have it: missing or dangling relationships, part names in another
+case, a missing unit, doubled or unused vertices, degenerate triangles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import InputError
+from printprep.threemf.archive import Archive
+from printprep.threemf.package import MODEL_PART
+from printprep.threemf.parse import (
+    ParsedModel,
+    ParsedObject,
+    Reference,
+    parse_elements,
+    parse_model,
+)
+from printprep.threemf.volumes import read_unprinted
+
+if TYPE_CHECKING:
+    from printprep.types import Float, Int
+
+ATTACHMENT = "Metadata/printprep.json"
+_ATTACHMENT_BYTES_MAX = 16 << 20
+_TRIANGLES_MAX = 30_000_000
+_DEPTH_MAX = 64
+_PLACED_MAX = 100_000
+_SOLID = "model"
+
+
+@dataclass(frozen=True, eq=False)
+class ThreeMF:
+    """What a 3MF prints.
+
+    vertices : (n, 3) float64 mm;  faces : (m, 3) int64, not welded across objects;
+    names : of the objects on the bed, in build order;
+    attachments : printprep's own JSON by part name, where the file is ours.
+    """
+
+    vertices: Float
+    faces: Int
+    names: tuple[str, ...]
+    attachments: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def read_3mf(path: str | Path) -> ThreeMF:
+    """Read the 3MF at `path`.  Raises InputError that names the file and the fact."""
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    with Archive(path) as archive:
+        build = _Build(archive)
+        build.place_all()
+        if not build.faces:
+            raise InputError(f"{archive.name}: its build holds no triangles that would be printed")
+        attachments = {}
+        if ATTACHMENT in archive:
+            attachments[ATTACHMENT] = archive.read(ATTACHMENT, _ATTACHMENT_BYTES_MAX)
+    return ThreeMF(
+        np.concatenate(build.vertices),
+        np.concatenate(build.faces),
+        tuple(build.names),
+        attachments,
+    )
+
+
+class _Build:
+    """Walks the build of the root model, and gathers what it prints in mm."""
+
+    def __init__(self, archive: Archive) -> None:
+        self.vertices: list[Float] = []
+        self.faces: list[Int] = []
+        self.names: list[str] = []
+        self._archive = archive
+        self._root = _root_part(archive)
+        self._unprinted = read_unprinted(archive)
+        self._models: dict[str, ParsedModel] = {}
+        self._meshes: dict[tuple[str, str], tuple[Float, Int]] = {}
+        self._placed = self._vertex_count = self._face_count = 0
+
+    def place_all(self) -> None:
+        model = self._model(self._root)
+        to_mm = np.diag([model.unit_mm, model.unit_mm, model.unit_mm, 1.0])
+        for item in model.items:
+            part = item.part or self._root
+            if self._object(part, item.object_id).kind == _SOLID:
+                self.names.append(self._object(part, item.object_id).name)
+                self._place(part, item, to_mm, item.object_id, 0)
+
+    def _place(self, part: str, here: Reference, outer: Float, top_id: str, depth: int) -> None:
+        self._placed += 1
+        if depth > _DEPTH_MAX or self._placed > _PLACED_MAX:
+            raise InputError(
+                f"{self._archive.name}: components are nested in a circle, or too deep"
+            )
+        found = self._object(part, here.object_id)
+        if found.kind != _SOLID:
+            return
+        matrix = np.column_stack([here.transform, [0.0, 0.0, 0.0, 1.0]]) @ outer  # row vectors
+        if found.indices:
+            self._add(part, here.object_id, matrix)
+        for component in found.components:
+            if (top_id, component.object_id) not in self._unprinted.components:
+                self._place(component.part or part, component, matrix, top_id, depth + 1)
+
+    def _add(self, part: str, object_id: str, matrix: Float) -> None:
+        points, faces = self._mesh(part, object_id)
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = points @ matrix[:3, :3] + matrix[3, :3]
+        if not np.isfinite(moved).all():
+            raise InputError(f"{self._archive.name}: object {object_id} has coordinates too large")
+        if np.linalg.det(matrix[:3, :3]) < 0.0:
+            faces = faces[:, ::-1]  # a mirror turns the inside out
+        self.vertices.append(moved)
+        self.faces.append(faces + self._vertex_count)
+        self._vertex_count += len(moved)
+        self._face_count += len(faces)
+        if self._face_count > _TRIANGLES_MAX:
+            raise InputError(
+                f"{self._archive.name}: prints more than {_TRIANGLES_MAX} triangles, refused"
+            )
+
+    def _mesh(self, part: str, object_id: str) -> tuple[Float, Int]:
+        """An object's printed triangles with the vertices they use, in the file's unit."""
+        key = (part, object_id)
+        if key not in self._meshes:
+            found = self._object(part, object_id)
+            points = np.array(found.coordinates, dtype=np.float64).reshape(-1, 3)
+            faces = np.array(found.indices, dtype=np.int64).reshape(-1, 3)
+            where = f"{self._archive.name}: object {object_id}"
+            if not np.isfinite(points).all():
+                raise InputError(f"{where} has coordinates that are not finite")
+            if faces.min() < 0 or faces.max() >= len(points):
+                raise InputError(f"{where} has triangles that name a vertex it does not have")
+            if part == self._root:
+                printed = np.ones(len(faces), dtype=bool)
+                for first, last in self._unprinted.triangles.get(object_id, ()):
+                    printed[max(first, 0) : max(last + 1, 0)] = False
+                faces = faces[printed]
+            used = np.zeros(len(points), dtype=bool)
+            used[faces] = True
+            self._meshes[key] = points[used], (np.cumsum(used) - 1)[faces]
+        return self._meshes[key]
+
+    def _object(self, part: str, object_id: str) -> ParsedObject:
+        objects = self._model(part).objects
+        if object_id not in objects:
+            raise InputError(
+                f"{self._archive.name}: the build names object {object_id}, which is not there"
+            )
+        return objects[object_id]
+
+    def _model(self, part: str) -> ParsedModel:
+        if part not in self._models:
+            with self._archive.open(part) as stream:
+                self._models[part] = parse_model(stream, f"{self._archive.name}: {part}")
+        return self._models[part]
+
+
+def _root_part(archive: Archive) -> str:
+    """The model part that the package names; failing that, where it usually lies."""
+    if "_rels/.rels" in archive:
+        with archive.open("_rels/.rels") as stream:
+            relations = parse_elements(stream, f"{archive.name}: _rels/.rels")
+        for _, _, attributes in relations:
+            target = attributes.get("Target", "")
+            if attributes.get("Type", "").endswith("/3dmodel") and target in archive:
+                return target
+    if MODEL_PART in archive:
+        return MODEL_PART
+    models = archive.with_suffix(".model")
+    if not models:
+        raise InputError(f"{archive.name}: holds no 3D model", "is it a 3MF file?")
+    return models[0]
