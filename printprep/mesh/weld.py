@@ -23,14 +23,32 @@ class EdgeCounts:
     crowded_edges: int
 
 
+# Two corners closer than this, relative to the largest coordinate, are one corner that single
+# precision wrote in two ways: four units in the last place of a float32 (2⁻²⁴ each).
+_NOISE = 4 * 2.0**-24
+
+
 def weld(vertices: Float, faces: Int) -> tuple[Float, Int]:
     """One vertex per position, no face with a repeated corner, no vertex without a face.
 
     Positions are joined when they are equal to the last bit: files repeat a shared corner
-    literally (STL always, OBJ and GLB at seams of texture or normal), and anything wider would
-    close gaps that are meant.  A face that collapses uses one edge in both directions, so dropping
-    it opens nothing; a face of no area but three distinct corners is kept for the same reason.
+    literally (STL always, OBJ and GLB at seams of texture or normal).  Only where that leaves the
+    surface open are corners joined that differ by the noise of single precision, and only if that
+    closes edges.  Anything wider is a gap, and mending it is repair.
+
+    A face that collapses uses one edge in both directions, so dropping it opens nothing; a face
+    of no area but three distinct corners is kept for the same reason.
     """
+    joined, corners = _weld_equal(vertices, faces)
+    still_open = edge_counts(corners).open_edges
+    if still_open:
+        near, kept = _weld_near(joined, corners, _NOISE * float(np.abs(joined).max()))
+        if len(kept) and edge_counts(kept).open_edges < still_open:
+            return near, kept
+    return joined, corners
+
+
+def _weld_equal(vertices: Float, faces: Int) -> tuple[Float, Int]:
     vertices = vertices + 0.0  # −0.0 and 0.0 are one position
     order = np.lexsort(vertices.T)
     ordered = vertices[order]
@@ -39,6 +57,20 @@ def weld(vertices: Float, faces: Int) -> tuple[Float, Int]:
     group = np.empty(len(order), dtype=np.int64)
     group[order] = np.cumsum(fresh) - 1
     return compact(ordered[fresh], drop_collapsed(group[faces]))
+
+
+def _weld_near(vertices: Float, faces: Int, tolerance: float) -> tuple[Float, Int]:
+    """Vertices within ``tolerance`` of each other become the first of them."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray")
+    size = len(vertices)
+    links = coo_matrix((np.ones(len(pairs), dtype=np.int8), pairs.T), shape=(size, size))
+    _, label = connected_components(links, directed=False)
+    _, first = np.unique(label, return_index=True)
+    return compact(vertices, drop_collapsed(first[label][faces]))
 
 
 def drop_collapsed(faces: Int) -> Int:
