@@ -1,0 +1,34 @@
+"""What can be wrong with a part: one rule a file, the same for our own parts and for any mesh.
+
+``run_rules(subject, profile)`` runs them all; a rule is registered by being imported here.
+"""
+
+from printprep.check import (  # noqa: F401  (imported to register their rules)
+    fits_bed,
+    lean_out_of_reach,
+    no_contact,
+    nothing_to_hollow,
+    repaired,
+    sealed_cavity,
+    tilt,
+    tiny_model,
+    wall_thickness,
+    watertight,
+)
+from printprep.check.registry import Rule, at_or_above, rules, run_rules
+from printprep.check.subject import Subject, subject_of_solid
+from printprep.check.wall_thickness import Wall, wall_min_mm
+from printprep.check.written import as_written, written_arrays
+
+__all__ = [
+    "Rule",
+    "Subject",
+    "Wall",
+    "as_written",
+    "at_or_above",
+    "rules",
+    "run_rules",
+    "subject_of_solid",
+    "wall_min_mm",
+    "written_arrays",
+]

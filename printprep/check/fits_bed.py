@@ -1,0 +1,63 @@
+"""Rule: the part fits into the printer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+# A part made exactly as large as the bed still fits after float32.
+_SLACK = 1 + 1e-6
+# So far beyond the bed the unit was meant otherwise.
+_WRONG_UNIT = 10.0
+
+
+@rule("fits-bed")
+def fits_bed(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents slicing, and waiting for, a part the printer cannot hold.
+
+    A quarter turn on the bed counts as a fit: slicers do that.
+    """
+    size, bed = subject.size_mm, profile.printer.bed_mm
+    turned = (size[1], size[0], size[2])
+    best = min((size, turned), key=lambda sides: _excess(sides, bed))
+    excess = _excess(best, bed)
+    if excess <= _SLACK:
+        return
+    axis = max(range(3), key=lambda index: best[index] / bed[index])
+    yield Finding(
+        "fits-bed",
+        "error",
+        f"The part is {_sides(size)} mm, the printer holds {_sides(bed)} mm.",
+        _way_out(size, bed, excess),
+        value=best[axis],
+        limit=bed[axis],
+        unit="mm",
+    )
+
+
+def _way_out(size: Sequence[float], bed: Sequence[float], excess: float) -> str:
+    fitting = math.floor(10 * max(size) / excess) / 10
+    if excess > _WRONG_UNIT:
+        return (
+            "The file may be in another unit: --units names it, "
+            f"--scale or --size {fitting:g} makes it fit."
+        )
+    if _excess(sorted(size), sorted(bed)) <= _SLACK:
+        return f"Lay it down (--up), or make it smaller (--size {fitting:g})."
+    return f"Make it smaller: --size {fitting:g} fits; or choose a profile of a larger printer."
+
+
+def _excess(size: Sequence[float], bed: Sequence[float]) -> float:
+    return max(side / room for side, room in zip(size, bed, strict=True))
+
+
+def _sides(sides: Sequence[float]) -> str:
+    return " × ".join(f"{side:.4g}" for side in sides)

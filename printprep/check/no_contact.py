@@ -1,0 +1,31 @@
+"""Rule: every body of the part touches the bed with its first layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("no-contact")
+def no_contact(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a first layer that is empty, or a body that starts in mid-air."""
+    if subject.stability.tilt_deg is not None:
+        return
+    x, y, z = subject.stability.centre_of_mass_mm
+    layer = profile.printer.first_layer_mm
+    yield Finding(
+        "no-contact",
+        "error",
+        f"A body touches the bed nowhere in the first layer ({layer:g} mm): it cannot stand.",
+        "Seat its feet (--base always), turn it (--up), or join the body to the rest.",
+        value=0.0,
+        unit="mm2",
+        at_mm=(x, y, z),
+    )

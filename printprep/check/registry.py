@@ -1,0 +1,54 @@
+"""The registry of rules: a stable id, a function, and one order for what they find."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from printprep.types import Finding, Severity
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+Rule = Callable[["Subject", "Profile"], Iterable[Finding]]
+
+_RANK: Mapping[Severity, int] = MappingProxyType({"info": 0, "warning": 1, "error": 2})
+_RULES: dict[str, Rule] = {}
+
+
+def rule(rule_id: str) -> Callable[[Rule], Rule]:
+    """Register a rule under an id that never changes: scripts filter on it.
+
+    The rule's docstring says which mistake it prevents.
+    """
+
+    def register(function: Rule) -> Rule:
+        if rule_id in _RULES:
+            raise ValueError(f"two rules are called {rule_id}")
+        _RULES[rule_id] = function
+        return function
+
+    return register
+
+
+def rules() -> Mapping[str, Rule]:
+    """Every rule by its id, sorted by id."""
+    return MappingProxyType(dict(sorted(_RULES.items())))
+
+
+def run_rules(subject: Subject, profile: Profile) -> tuple[Finding, ...]:
+    """What all rules find, the worst first, then by rule id, then as the rule gave them."""
+    found = [item for check in rules().values() for item in check(subject, profile)]
+    return sorted_findings(found)
+
+
+def sorted_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """The worst first, then by rule id; what one rule found keeps its order."""
+    return tuple(sorted(findings, key=lambda item: (-_RANK[item.severity], item.rule)))
+
+
+def at_or_above(findings: Iterable[Finding], severity: Severity) -> tuple[Finding, ...]:
+    """Those at least as severe as ``severity``, in their order."""
+    return tuple(item for item in findings if _RANK[item.severity] >= _RANK[severity])

@@ -1,0 +1,49 @@
+"""Rule: the file was a solid before anything was done to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding, Severity
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+# What a printed layer hides.
+_MOVED_LIMIT_MM = 0.1
+
+
+@rule("repaired")
+def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a slicer from guessing what an open or tangled surface means.
+
+    On a file as it came: error where holes were closed or the surface remade, warning where only
+    overlapping shells were joined.  On a part of ours the repair is done, and worth a word only
+    where it moved the surface by more than a layer hides.
+    """
+    del profile
+    repair = subject.repair
+    if repair.rung == "as-is" or (subject.hollowed and repair.moved_max_mm <= _MOVED_LIMIT_MM):
+        return
+    done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
+    moved = f"the surface moved by up to {repair.moved_max_mm:.2g} mm"
+    if subject.hollowed:
+        severity: Severity = "warning"
+        message = f"The model had to be repaired, and {moved} ({done})."
+        fix = "Look at the part before printing it, or repair the model where it was made."
+    else:
+        severity = "warning" if repair.rung == "union" else "error"
+        message = f"The file is not one closed surface; making it one took: {done} ({moved})."
+        fix = "`printprep hollow` does the same repair and writes a sound part."
+    yield Finding(
+        "repaired",
+        severity,
+        message,
+        fix,
+        value=repair.moved_max_mm,
+        limit=_MOVED_LIMIT_MM if subject.hollowed else 0.0,
+        unit="mm",
+    )

@@ -1,0 +1,77 @@
+"""What the rules look at: a part, whoever made it, taken apart into outside and cavities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from printprep.mesh.measure import innermost, shells
+from printprep.types import Repair, Stability
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A part under examination, on the bed, z up, in mm.
+
+    part : the whole part as it is or will be written (float32 coordinates, ``as_written``).
+    outside : what walls are measured to: for a part of ours the model with its base and the voids
+    it already had, for a file its outer shells.
+    cavities : positive solids, disjoint from the material.
+    stability : how it stands;  lean_deg : the lean it is asked to stand.
+    repair : what it took to make a solid of the file.
+    hollowed : True for a part of ours, False for a file as it came.
+    reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
+    """
+
+    part: Manifold
+    outside: Manifold
+    cavities: tuple[Manifold, ...]
+    stability: Stability
+    lean_deg: float
+    repair: Repair
+    hollowed: bool
+    reachable_deg: float | None = None
+
+    @property
+    def size_mm(self) -> tuple[float, float, float]:
+        """Extents along x, y, z."""
+        x0, y0, z0, x1, y1, z1 = self.part.bounding_box()
+        return x1 - x0, y1 - y0, z1 - z0
+
+
+def subject_of_solid(
+    part: Manifold, stability: Stability, lean_deg: float, repair: Repair
+) -> Subject:
+    """Any solid as a subject: its shells of negative volume bound cavities, the rest is outside.
+
+    A loose piece inside a cavity is part of neither: it takes room from the cavity it lies in.
+    """
+    solids, voids = shells(part)
+    outer, rest = [], list(voids)
+    for solid in solids:
+        around = innermost(solid, voids)
+        if around is None:
+            outer.append(solid)
+        else:
+            rest[around] = rest[around] - solid
+    return Subject(
+        part=part,
+        outside=united(outer),
+        cavities=tuple(rest),
+        stability=stability,
+        lean_deg=lean_deg,
+        repair=repair,
+        hollowed=False,
+    )
+
+
+def united(solids: Sequence[Manifold]) -> Manifold:
+    """The union of solids, empty for none."""
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(list(solids), OpType.Add) if solids else Manifold()

@@ -1,0 +1,45 @@
+"""Rule: the part stands at the lean it is asked to stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("tilt")
+def tilt(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a figure that falls over on the shelf, or on the bed while it prints.
+
+    Silent where another rule names the cause: no contact at all, or a lean out of reach.
+    """
+    del profile
+    tilt_deg = subject.stability.tilt_deg
+    if tilt_deg is None or subject.reachable_deg is not None or tilt_deg >= subject.lean_deg:
+        return
+    if tilt_deg < 0:
+        message = f"It tips over by itself ({tilt_deg:.1f}°); the lean asked for is"
+    else:
+        message = f"It tips over at a lean of {tilt_deg:.1f}°; the lean asked for is"
+    if subject.hollowed:
+        fix = "Give it a base (--base always) or another pose (--up)."
+    else:
+        fix = (
+            "Hollow the solid model with printprep, give it a larger base, or another pose (--up)."
+        )
+    yield Finding(
+        "tilt",
+        "error",
+        f"{message} {subject.lean_deg:g}°.",
+        fix,
+        value=tilt_deg,
+        limit=subject.lean_deg,
+        unit="deg",
+        at_mm=subject.stability.centre_of_mass_mm,
+    )

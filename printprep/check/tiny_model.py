@@ -1,0 +1,34 @@
+"""Rule: the model has the size of a thing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+LEAST_SIDE_MM = 1.0
+
+
+@rule("tiny-model")
+def tiny_model(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a file in metres, or without a unit, from printing as a crumb."""
+    del profile
+    side = max(subject.size_mm)
+    if side >= LEAST_SIDE_MM:
+        return
+    yield Finding(
+        "tiny-model",
+        "error",
+        f"The longest side is {side:.3g} mm: the file is hardly in millimetres.",
+        f"Name its unit (--units m makes it {1000 * side:.4g} mm), or its size "
+        "(--size 100, or --scale).",
+        value=side,
+        limit=LEAST_SIDE_MM,
+        unit="mm",
+    )
