@@ -1,0 +1,203 @@
+"""PrusaSlicer as a child process: found, asked about a file, and made to slice.
+
+Every call empties --post-process, and what is loaded is stripped of that key first: an .ini, a
+G-code or a 3MF can carry commands, and some versions run them without asking.  Every call has a
+time limit, a closed standard input and a settings folder of its own, so that neither a question
+nor the user's own set-up can change what comes out.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from printprep.errors import InputError, OutputError, ToolError
+from printprep.slicer.child import INSTALL_HINT, SLICER_VARIABLE, last_lines, run_child
+from printprep.slicer.sanitize import settings_ini, without_commands
+
+_ON_PATH = ("prusa-slicer", "prusa-slicer-console", "PrusaSlicer", "prusaslicer")
+_IN_APP = Path("Contents", "MacOS", "PrusaSlicer")
+_VERSION = re.compile(r"^(\w*Slicer)-(\d+)\.(\d+)\.(\d+)", re.MULTILINE)
+_ASK_SECONDS = 60.0
+
+
+@dataclass(frozen=True)
+class ModelInfo:
+    """What the slicer says of a model: its sum over the objects of the file.
+
+    parts counts shells (an inverted cavity shell is one);  size_mm : (x, y, z) of the whole.
+    """
+
+    manifold: bool
+    parts: int
+    volume_mm3: float
+    size_mm: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Sliced:
+    """A finished G-code and what the slicer warned of."""
+
+    gcode: Path
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Slicer:
+    """A PrusaSlicer that answered; version as (major, minor, patch)."""
+
+    executable: Path
+    name: str
+    version: tuple[int, int, int]
+
+    def info(self, file: Path, *, timeout_seconds: float = 120.0) -> ModelInfo:
+        """Ask about a model (STL, OBJ, 3MF).  Raises ToolError where it cannot be loaded."""
+        with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
+            safe = _model(file, Path(folder))
+            done = run_child(self.executable, ["--info", str(safe)], Path(folder), timeout_seconds)
+        return _parse_info(done.stdout, file)
+
+    def slice(
+        self,
+        file: Path,
+        out_gcode: Path,
+        settings: Mapping[str, str] | None = None,
+        load: Path | None = None,
+        *,
+        timeout_seconds: float = 1800.0,
+    ) -> Sliced:
+        """Slice `file` where it lies, into `out_gcode`, which is replaced only when complete.
+
+        load : .ini or G-code with print settings;  settings : keys that go over them.  Settings
+        that an object of a 3MF carries go over both.
+
+        Raises ToolError where the slicer fails, takes too long, or ends well without a G-code;
+        OutputError where `out_gcode` cannot be written.
+        """
+        with tempfile.TemporaryDirectory(prefix="printprep-") as name:
+            folder = Path(name)
+            made = folder / "sliced.gcode"
+            arguments = ["--export-gcode", "--dont-arrange", "--output", str(made)]
+            if self.version >= (2, 4, 0):  # else a bad value is replaced, and nobody told
+                arguments += ["--config-compatibility", "disable"]
+            if load is not None:
+                arguments += ["--load", str(without_commands(load, folder))]
+            if settings:
+                own = folder / "settings.ini"
+                own.write_text(settings_ini(settings), encoding="utf-8")
+                arguments += ["--load", str(own)]
+            arguments.append(str(_model(file, folder)))
+            done = run_child(self.executable, arguments, folder, timeout_seconds)
+            if not made.is_file() or made.stat().st_size == 0:
+                raise ToolError(
+                    f"{self.name} ended without an error, but sliced nothing of {file.name}",
+                    last_lines(done) or "slice it by hand once to see what it asks",
+                )
+            try:
+                _replace(made, out_gcode)
+            except OSError as error:
+                raise OutputError(f"{out_gcode}: cannot be written ({error})") from error
+        return Sliced(out_gcode, _warnings(done.stdout + done.stderr))
+
+
+def find_slicer(path: Path | None = None) -> Slicer:
+    """The slicer at `path`, or the one on this machine.  Raises ToolError that says how to get one.
+
+    Looked for: the variable PRINTPREP_SLICER, the search path, then the usual places of macOS and
+    Windows.
+    """
+    if path is None and os.environ.get(SLICER_VARIABLE):
+        path = Path(os.environ[SLICER_VARIABLE])
+    if path is not None:
+        if path.is_dir() and (path / _IN_APP).is_file():
+            path = path / _IN_APP
+        found = shutil.which(str(path))
+        if found is None:
+            raise ToolError(f"{path}: there is no such program", INSTALL_HINT)
+        return _answering(_console(Path(found)))
+    for name in _ON_PATH:
+        found = shutil.which(name)
+        if found is not None:
+            return _answering(_console(Path(found)))
+    for place in _usual_places():
+        if place.is_file():
+            return _answering(place)
+    raise ToolError("PrusaSlicer was not found", INSTALL_HINT)
+
+
+def _usual_places() -> list[Path]:
+    if sys.platform == "darwin":
+        roots = [Path("/Applications"), Path.home() / "Applications"]
+        folders = [folder for root in roots for folder in (root, root / "Original Prusa Drivers")]
+        return [folder / "PrusaSlicer.app" / _IN_APP for folder in folders]
+    if sys.platform == "win32":
+        roots = [
+            Path(os.environ[key]) for key in ("ProgramW6432", "ProgramFiles") if key in os.environ
+        ]
+        return [root / "Prusa3D" / "PrusaSlicer" / "prusa-slicer-console.exe" for root in roots]
+    return []
+
+
+def _console(path: Path) -> Path:
+    """On Windows the program beside the one with windows, which has no output to read."""
+    beside = path.with_name("prusa-slicer-console.exe")
+    return beside if path.name.lower() == "prusa-slicer.exe" and beside.is_file() else path
+
+
+def _answering(path: Path) -> Slicer:
+    with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
+        done = run_child(path, ["--help"], Path(folder), _ASK_SECONDS)
+    match = _VERSION.search(done.stdout)
+    if match is None:
+        raise ToolError(f"{path} does not answer as PrusaSlicer does", INSTALL_HINT)
+    name, *numbers = match.groups()
+    major, minor, patch = (int(number) for number in numbers)
+    return Slicer(path, f"{name} {major}.{minor}.{patch}", (major, minor, patch))
+
+
+def _model(file: Path, folder: Path) -> Path:
+    if not file.is_file():
+        raise InputError(f"{file}: there is no such file")
+    if file.suffix.lower() not in (".3mf", ".stl", ".obj"):
+        raise InputError(f"{file.name}: only 3MF, STL and OBJ are handed to a slicer")
+    return without_commands(file, folder)
+
+
+def _parse_info(text: str, file: Path) -> ModelInfo:
+    blocks: dict[str, list[str]] = {}
+    for key, value in re.findall(r"^(\w+) *= *(\S+)\s*$", text, re.MULTILINE):
+        blocks.setdefault(key, []).append(value)
+    try:
+        low = [min(map(float, blocks[f"min_{axis}"])) for axis in "xyz"]
+        high = [max(map(float, blocks[f"max_{axis}"])) for axis in "xyz"]
+        x, y, z = (above - below for below, above in zip(low, high, strict=True))
+        return ModelInfo(
+            all(value == "yes" for value in blocks["manifold"]),
+            sum(map(int, blocks["number_of_parts"])),
+            sum(map(float, blocks["volume"])),
+            (x, y, z),
+        )
+    except (KeyError, ValueError) as error:
+        raise ToolError(f"the slicer says nothing of {file.name} that can be read") from error
+
+
+def _warnings(text: str) -> tuple[str, ...]:
+    lines = [line.strip() for line in text.splitlines()]
+    return tuple(line for line in lines if re.search(r"\bwarning\b", line, re.IGNORECASE))
+
+
+def _replace(made: Path, out: Path) -> None:
+    handle, name = tempfile.mkstemp(prefix=f".{out.name}.", suffix=".part", dir=out.parent)
+    os.close(handle)
+    beside = Path(name)
+    try:
+        shutil.copyfile(made, beside)
+        beside.replace(out)
+    finally:
+        beside.unlink(missing_ok=True)
