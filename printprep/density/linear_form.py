@@ -17,11 +17,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from printprep.density.objective import Float, PaperSettings, Terms, gradient, terms
+from printprep.density.objective import Float, Terms, gradient, terms
 from printprep.density.paper_domain import PaperDomain
+from printprep.density.paper_settings import PaperSettings
 from printprep.density.smoothing import box_mean, smooth
 
 Int = NDArray[np.int64]
+
+AROUND = np.stack(np.meshgrid(*[[0, 1, 2]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+"""The kernel's 27 voxels, as offsets into a grid padded by one."""
 
 DECAY = 4.0  # the soft contact's loss per layer above ground, authors' code
 
@@ -89,24 +93,37 @@ class LinearForm:
         g = self.ground(self.contact(rho))
         return terms(self.moments(rho), g, self.columns, self.settings)
 
-    def gradient(self, rho: Float) -> tuple[Float, Float]:
-        """∂L/∂ρ (n,) and q = ∂L/∂s (4,) at the free densities (n,).
+    def pull(self, s: Float, contact: Float) -> tuple[Terms, Float, Float]:
+        """The loss terms, q = ∂L/∂s (4,) and ∂L/∂ρ̃ of the contenders (m,), from s and contact.
 
         Where several layers of a column tie for the contact the lowest takes the gradient, and
         none does when the shell's floor is at least as high.
         """
-        contact = self.contact(rho)
-        g = self.ground(contact)
-        q, by_g = gradient(self.moments(rho), g, self.columns, self.settings)
-        slope: Float = q @ self.W
+        g = self.floor.copy()
         opened = len(self.slots)
-        if opened:
-            values = np.append(contact, 0.0)[self.slots]
-            winner = np.take_along_axis(self.slots, values.argmax(axis=1)[:, None], axis=1)[:, 0]
-            wins = values.max(axis=1) > self.floor[:opened]
-            pull = by_g[:opened][wins] * self.decay[winner[wins]] / self.neighbours.shape[1]
+        by_contact = np.zeros(len(contact))
+        if not opened:
+            value, q, _ = gradient(s, g, self.columns, self.settings)
+            return value, q, by_contact
+        values = np.append(contact, 0.0)[self.slots]
+        layer = values.argmax(axis=1)
+        column = np.arange(opened)
+        best = values[column, layer]
+        wins = best > g[:opened]
+        g[:opened][wins] = best[wins]
+        value, q, by_g = gradient(s, g, self.columns, self.settings)
+        winner = self.slots[column, layer][wins]
+        by_contact[winner] = by_g[:opened][wins] * self.decay[winner]
+        return value, q, by_contact
+
+    def gradient(self, rho: Float) -> tuple[Float, Float]:
+        """∂L/∂ρ (n,) and q = ∂L/∂s (4,) at the free densities (n,)."""
+        _, q, by_contact = self.pull(self.moments(rho), self.contact(rho))
+        slope: Float = q @ self.W
+        if len(by_contact):
             padded = np.append(slope, 0.0)
-            np.add.at(padded, self.neighbours[winner[wins]], pull[:, None])
+            share = by_contact / self.neighbours.shape[1]
+            np.add.at(padded, self.neighbours, share[:, None])
             slope = padded[:-1]
         return slope, q
 
@@ -129,62 +146,88 @@ def linear_form(
     voxels = np.argwhere(domain.free)
     nx, ny, _ = domain.shape
     reference = np.array([(nx - 1) / 2, (ny - 1) / 2, domain.ground], dtype=np.float64)
-    s0, W = _moment_rows(domain, settings, rho0, voxels, reference)
-    open_ground = _ground(domain, settings, rho0, voxels)
-    columns, floor, contenders, decay, slots = open_ground
-    number = np.full(domain.shape, len(voxels), dtype=np.int64)
-    number[domain.free] = np.arange(len(voxels))
+    s0, W = _moment_rows(domain, settings, rho0, reference)
+    columns, floor, contenders, decay, slots = _ground(domain, rho0)
     at = voxels[contenders]
     if settings.smoothing:
-        around = np.stack(np.meshgrid(*[[0, 1, 2]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-        padded = np.pad(number, 1, constant_values=len(voxels))
-        neighbours = padded[tuple(np.moveaxis(at[:, None] + around, -1, 0))]
-        r0 = box_mean(rho0)[tuple(at.T)]
+        neighbours = _neighbours(domain, at)
+        whole = np.pad(rho0, 1)
+        around = at[:, None] + AROUND
+        r0 = whole[tuple(np.moveaxis(around, -1, 0))].sum(axis=1) / len(AROUND)
     else:
         neighbours = contenders[:, None]
         r0 = np.zeros(len(at))
     return LinearForm(
-        domain, settings, rho0, voxels, reference, s0, W,
-        columns - reference[:2], floor, contenders, r0, decay, neighbours, slots,
-    )  # fmt: skip
+        domain=domain,
+        settings=settings,
+        frozen=rho0,
+        voxels=voxels,
+        reference=reference,
+        s0=s0,
+        W=W,
+        columns=columns - reference[:2],
+        floor=floor,
+        contenders=contenders,
+        r0=r0,
+        decay=decay,
+        neighbours=neighbours,
+        slots=slots,
+    )
 
 
 def _moment_rows(
-    domain: PaperDomain, settings: PaperSettings, rho0: Float, voxels: Int, reference: Float
+    domain: PaperDomain, settings: PaperSettings, rho0: Float, reference: Float
 ) -> tuple[Float, Float]:
     """s₀ and W: the adjoint of the smoothing applied to (1, x, y, z) on the free voxels."""
-    axes = [np.arange(n) - r for n, r in zip(domain.shape, reference, strict=True)]
+    used = np.argwhere(domain.shell | domain.free)
+    # Frozen voxels one step outside O ∪ B still reach into it through the kernel.
+    low = np.maximum(used.min(axis=0) - 1, 0)
+    high = np.minimum(used.max(axis=0) + 2, domain.shape)
+    crop = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    free, shell, rho = domain.free[crop], domain.shell[crop], rho0[crop]
+    axes = [np.arange(a, b) - r for a, b, r in zip(low, high, reference, strict=True)]
     x, y, z = np.meshgrid(*axes, indexing="ij", sparse=True)
     s0 = np.zeros(4)
-    W = np.zeros((4, len(voxels)))
+    W = np.zeros((4, int(np.count_nonzero(free))))
     for row, weight in enumerate((np.ones(1), x, y, z)):
-        on_free = np.where(domain.free, weight, 0.0)
-        adjoint = box_mean(on_free) if settings.smoothing else on_free
-        W[row] = adjoint[domain.free]
-        spread = adjoint if settings.smoothing else np.zeros_like(rho0)
-        s0[row] = np.sum(rho0 * (np.where(domain.shell, weight, 0.0) + spread))
+        adjoint = np.where(free, weight, 0.0)
+        s0[row] = np.sum(rho * np.where(shell, weight, 0.0))
+        if settings.smoothing:
+            adjoint = box_mean(adjoint)
+            s0[row] += np.sum(rho * adjoint)
+        W[row] = adjoint[free]
     return s0, W
 
 
-def _ground(
-    domain: PaperDomain, settings: PaperSettings, rho0: Float, voxels: Int
-) -> tuple[Float, Float, Int, Float, Int]:
+def _neighbours(domain: PaperDomain, at: Int) -> Int:
+    """(m, 27) numbers of the free voxels around the voxels (m, 3), n where one is not free."""
+    n = int(np.count_nonzero(domain.free))
+    number = np.full(tuple(length + 2 for length in domain.shape), n, dtype=np.int64)
+    number[1:-1, 1:-1, 1:-1][domain.free] = np.arange(n)
+    found: Int = number[tuple(np.moveaxis(at[:, None] + AROUND, -1, 0))]
+    return found
+
+
+def _ground(domain: PaperDomain, rho0: Float) -> tuple[Float, Float, Int, Float, Int]:
     """Columns (open ones first) and their floors, the contenders with 4^(−k), and their slots."""
-    above = slice(domain.ground, None)
-    layers = DECAY ** -np.arange(domain.shape[2] - domain.ground, dtype=np.float64)
-    floor = np.max(np.where(domain.shell, rho0, 0.0)[:, :, above] * layers, axis=2)
-    can = domain.free[:, :, above] & (layers > floor[:, :, None])
+    free = domain.free[:, :, domain.ground :]
+    layers = DECAY ** -np.arange(free.shape[2], dtype=np.float64)
+    shell = np.where(domain.shell, rho0, 0.0)[:, :, domain.ground :]
+    floor = np.max(shell * layers, axis=2)
+    can = free & (layers > floor[:, :, None])
     opened = can.any(axis=2)
-    closed = ~opened & (floor > 0)
-    columns = np.concatenate((np.argwhere(opened), np.argwhere(closed)))
-    found = np.argwhere(can)  # C order, so column by column and upward within each
-    number = np.full(domain.shape, -1, dtype=np.int64)
-    number[domain.free] = np.arange(len(voxels))
+    columns = np.concatenate((np.argwhere(opened), np.argwhere(~opened & (floor > 0))))
+    found = np.argwhere(can)  # C order: column by column, and upward within each
+    number = np.cumsum(domain.free).reshape(domain.shape) - 1
     contenders = number[found[:, 0], found[:, 1], found[:, 2] + domain.ground]
-    column = np.cumsum(np.append(False, np.any(found[1:, :2] != found[:-1, :2], axis=1)))
-    column = column[: len(found)]
+    column = (np.cumsum(opened).reshape(opened.shape) - 1)[found[:, 0], found[:, 1]]
     rank = np.arange(len(found)) - np.searchsorted(column, column)
     slots = np.full((int(opened.sum()), int(rank.max(initial=-1)) + 1), len(found), np.int64)
     slots[column, rank] = np.arange(len(found))
-    heights = floor[tuple(columns.T)]
-    return columns.astype(np.float64), heights, contenders, layers[found[:, 2]], slots
+    return (
+        columns.astype(np.float64),
+        floor[tuple(columns.T)],
+        contenders,
+        layers[found[:, 2]],
+        slots,
+    )

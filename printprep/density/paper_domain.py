@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from printprep.density.paper_settings import PaperSettings
 from printprep.errors import GeometryError, UsageError
 
 Bool = NDArray[np.bool_]
@@ -50,9 +51,8 @@ class PaperDomain:
 
 def build_domain(
     occupied: Bool,
+    settings: PaperSettings,
     *,
-    epsilon: int = 2,
-    base: bool = True,
     shell: ShellRule = "auto",
     filling: Filling = "flood",
 ) -> PaperDomain:
@@ -61,8 +61,7 @@ def build_domain(
     Parameters
     ----------
     occupied : (nx, ny, nz) bool, a solid or only its surface voxels.
-    epsilon : ε, height of the base layer in voxels, and the L1 distance to O it stays within.
-    base : False leaves B empty (the paper's ablation "without B").
+    settings : ε, the base layer's reach, and whether there is one.
     shell : "occupied" freezes every voxel given, which is what the authors do with a generator's
         surface voxels; "boundary" freezes the voxels of O with one of their six neighbours outside
         O or outside the grid, which is what they do with a solid; "auto" takes "occupied" when the
@@ -72,9 +71,9 @@ def build_domain(
     Raises
     ------
     GeometryError : nothing is occupied.
-    UsageError : an unknown rule, a negative ε, or an array that is not three-dimensional bool.
+    UsageError : an unknown rule, or an array that is not three-dimensional bool.
     """
-    _check(occupied, epsilon)
+    _check(occupied)
     solid = fill(occupied, filling)
     boundary = solid & ~_erode(solid)
     if shell == "auto":
@@ -91,8 +90,8 @@ def build_domain(
         raise UsageError(f"shell rule {shell!r} is not one of auto, boundary, occupied")
     interior = solid & ~frozen
     ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
-    layer = base_layer(solid, ground, epsilon) if base else np.zeros_like(solid)
-    return PaperDomain(solid, frozen, interior, layer, interior | layer, ground)
+    base = _base_layer(solid, ground, settings) if settings.base else np.zeros_like(solid)
+    return PaperDomain(solid, frozen, interior, base, interior | base, ground)
 
 
 def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
@@ -124,20 +123,22 @@ def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
     return enclosed
 
 
-def base_layer(solid: Bool, ground: int, epsilon: int) -> Bool:
-    """B: the voxels outside O with ground ≤ z < ground + ε and L1 distance to O below ε.
+def _base_layer(solid: Bool, ground: int, settings: PaperSettings) -> Bool:
+    """B: the voxels outside O with ground ≤ z < ground + ε and an L1 distance to O below ε.
 
-    That is the paper's set.  The authors' code dilates O's lowest ε + 1 layers ε times, which
-    reaches L1 distances up to and including ε, and wraps around the edges of the grid.
+    With the reach "within", L1 distances up to and including ε.  The authors' code also measures
+    them to the lowest ε + 1 layers of O alone, which can differ under an overhang, and wraps B
+    around the edges of the grid, which is a slip.
 
     solid : (nx, ny, nz) bool;  returns the same shape.
     """
-    near = solid.copy()
-    for _ in range(epsilon - 1):
+    epsilon = settings.epsilon
+    near = solid
+    for _ in range(epsilon if settings.base_reach == "within" else epsilon - 1):
         near = _dilate(near)
-    near[:, :, :ground] = False
-    near[:, :, ground + epsilon :] = False
-    return near & ~solid
+    band = np.zeros_like(solid)
+    band[:, :, ground : ground + epsilon] = True
+    return near & band & ~solid
 
 
 def _dilate(mask: Bool) -> Bool:
@@ -162,12 +163,10 @@ def _erode(mask: Bool) -> Bool:
     return core
 
 
-def _check(occupied: Bool, epsilon: int) -> None:
+def _check(occupied: Bool) -> None:
     if occupied.ndim != 3 or occupied.dtype != np.bool_:
         raise UsageError(
             f"occupancy is {occupied.dtype} of shape {occupied.shape}, not bool (nx, ny, nz)"
         )
-    if epsilon < 0:
-        raise UsageError(f"base height {epsilon} is negative", "give a number of voxels, 0 to 8")
     if not occupied.any():
         raise GeometryError("the voxel grid is empty: no voxel is occupied")

@@ -9,7 +9,9 @@ carve along a plane.)
 Each step goes to the vertex ρ' = [gradient < 0] by an exact line search on the segment (the
 conditional-gradient method of Frank & Wolfe, 1956), on which s is four scalars that move linearly.
 The contact is a maximum, so the loss can have more than one stationary point: the solver starts
-from the bare shell, as the authors do, and from everything filled, and keeps the better end.
+from the bare shell, as the authors do, and from everything filled, and keeps the better end.  On a symmetric model a whole layer can tie on
+the plane and the optimum lie between filling and leaving it; such a layer is rounded when that
+costs less than the tolerance of the solution, and left fractional otherwise.
 """
 
 from __future__ import annotations
@@ -21,14 +23,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from printprep.density.linear_form import LinearForm, linear_form
-from printprep.density.objective import Float, PaperSettings, Terms, terms
+from printprep.density.objective import Float, Terms, terms
 from printprep.density.paper_domain import PaperDomain
+from printprep.density.paper_settings import PaperSettings
 from printprep.types import Grid, Plane
 
-MAX_STEPS = 200
-GAP = 1e-9  # stop when the linear model promises less than this share of the loss
-SAMPLES = 65  # of the segment, before the best bracket is refined
-REFINEMENTS = 60  # golden-section steps: the bracket shrinks by 0.618^60 < 1e-12
+MAX_STEPS = 100
+GAP = 1e-6  # stop when the linear model promises less than this share of the loss
+SAMPLES = 17  # of the segment, before the best bracket is refined
+REFINEMENTS = 32  # golden-section steps: the bracket shrinks by 0.618^32 < 1e-6
+END = 1e-4  # a segment whose end is better than this far before it is taken to its end
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,12 @@ def solve_plane(domain: PaperDomain, settings: PaperSettings) -> PaperSolution:
         starts.append(np.ones(form.count))
     ends = [_descend(form, start) for start in starts]
     rho, trace = min(ends, key=lambda end: float(end[1][-1]))
-    return package(form, rho, trace, _plane(form, rho))
+    plane = _plane(form, rho)
+    rounded = (rho > 0.5).astype(np.float64)
+    loss = form.terms(rounded).total
+    if loss <= trace[-1] + GAP * max(1.0, abs(trace[-1])):
+        rho, trace = rounded, np.append(trace, loss)
+    return package(form, rho, trace, plane)
 
 
 def package(form: LinearForm, rho: Float, trace: Float, plane: VoxelPlane | None) -> PaperSolution:
@@ -141,6 +150,8 @@ def _minimize(loss: Callable[[float], float]) -> tuple[float, float]:
     values = [loss(float(share)) for share in grid]
     best = int(np.argmin(values))
     least, at = values[best], float(grid[best])
+    if at == 1.0 and least <= loss(1.0 - END):
+        return least, at
     low, high = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, SAMPLES - 1)])
     ratio = (np.sqrt(5.0) - 1) / 2
     a, b = high - ratio * (high - low), low + ratio * (high - low)
