@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from printprep.check.walls import Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
 from printprep.types import Repair, Stability
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from manifold3d import Manifold
 
 
@@ -43,6 +43,11 @@ class Subject:
         x0, y0, z0, x1, y1, z1 = self.part.bounding_box()
         return x1 - x0, y1 - y0, z1 - z0
 
+    @cached_property
+    def wall(self) -> Wall | None:
+        """The thinnest wall between cavities and outside, None without a cavity; measured once."""
+        return wall_min_mm(self)
+
 
 def subject_of_solid(
     part: Manifold, stability: Stability, lean_deg: float, repair: Repair
@@ -68,10 +73,3 @@ def subject_of_solid(
         repair=repair,
         hollowed=False,
     )
-
-
-def united(solids: Sequence[Manifold]) -> Manifold:
-    """The union of solids, empty for none."""
-    from manifold3d import Manifold, OpType
-
-    return Manifold.batch_boolean(list(solids), OpType.Add) if solids else Manifold()

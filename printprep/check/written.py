@@ -38,12 +38,11 @@ def as_written(manifold: Manifold) -> Manifold:
 
     Raises GeometryError where no such form was found.
     """
-    current = _rounded(manifold)
     for _ in range(_TRIES):
-        _, faces = written_arrays(current)
+        vertices, faces = written_arrays(manifold)
         if not len(crowded_edges(faces)):
-            return current
-        current = _rounded(_drawn_apart(current))
+            return _without_flat_shells(_rebuilt(vertices, faces))
+        manifold = _drawn_apart(manifold)
     raise GeometryError(
         "The part touches itself along an edge and could not be drawn apart.", _NUDGE
     )
@@ -79,21 +78,23 @@ def crowded_edges(faces: Int) -> Int:
     return np.stack([start[bad], end[bad]], axis=1)
 
 
-def _rounded(manifold: Manifold) -> Manifold:
-    """Rounded and welded, as a manifold again, without the shells that became flat."""
-    from manifold3d import Manifold
-
+def _rebuilt(vertices: Float, faces: Int) -> Manifold:
     try:
-        rebuilt = from_arrays(*written_arrays(manifold))
+        return from_arrays(vertices, faces)
     except GeometryError as error:
         raise GeometryError(
             f"Rounded to what a file can hold, the part is broken: {error.message}", _NUDGE
         ) from error
-    shells = rebuilt.decompose()
+
+
+def _without_flat_shells(manifold: Manifold) -> Manifold:
+    from manifold3d import Manifold
+
+    shells = manifold.decompose()
     kept = [shell for shell in shells if not _is_flat(shell)]
     if not kept:
         raise GeometryError("Nothing of the part is left once its coordinates are rounded.")
-    return rebuilt if len(kept) == len(shells) else Manifold.compose(kept)
+    return manifold if len(kept) == len(shells) else Manifold.compose(kept)
 
 
 def _is_flat(shell: Manifold) -> bool:
@@ -105,9 +106,11 @@ def _drawn_apart(manifold: Manifold) -> Manifold:
     """Vertices that share their place with another move a little along their own normal.
 
     They move to the side their own fan of triangles bends to: into the material of a ridge, into
-    the void of a groove, so that what touched draws back on both sides.
+    the void of a groove, so that what touched draws back on both sides.  The kernel's own topology
+    is kept, which welding would have lost: there each of the touching edges has its own vertices.
     """
-    points, faces = arrays(manifold)
+    exact, faces = arrays(manifold)
+    points = exact.astype(np.float32).astype(np.float64)
     _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
     shared = counts[np.ravel(index)] > 1
     corners = points[faces]
