@@ -18,7 +18,7 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
 from printprep.check.registry import Rule, at_or_above, rules, run_rules
 from printprep.check.subject import Subject, subject_of_solid
 from printprep.check.walls import Wall, wall_min_mm
-from printprep.check.written import as_written, written_arrays
+from printprep.mesh.written import as_written, written_arrays
 
 __all__ = [
     "Rule",

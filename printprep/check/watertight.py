@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
-from printprep.check.written import crowded_edges, written_arrays
+from printprep.mesh.written import crowded_edges, written_arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:

@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
-from printprep.check import as_written, written_arrays
-from printprep.check.written import crowded_edges
 from printprep.errors import GeometryError
+from printprep.mesh.written import as_written, crowded_edges, written_arrays
 
 TOUCHING = {
     "two boxes along an edge": lambda: box(10) + box(10).translate((10, 10, 0)),
