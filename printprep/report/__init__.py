@@ -1,0 +1,1 @@
+"""What printprep says of a part: JSON, terminal, page, thumbnail."""
