@@ -48,13 +48,15 @@ class ThreeMF:
 
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64, not welded across objects;
     names : of the objects on the bed, in build order;
-    attachments : printprep's own JSON by part name, where the file is ours.
+    attachments : printprep's own JSON by part name, where the file is ours;
+    unit_mm : mm that one unit of the file stood for (already applied).
     """
 
     vertices: Float
     faces: Int
     names: tuple[str, ...]
     attachments: Mapping[str, bytes] = field(default_factory=dict)
+    unit_mm: float = 1.0
 
 
 def read_3mf(path: str | Path) -> ThreeMF:
@@ -75,6 +77,7 @@ def read_3mf(path: str | Path) -> ThreeMF:
         np.concatenate(build.faces),
         tuple(build.names),
         attachments,
+        build.unit_mm,
     )
 
 
@@ -85,6 +88,7 @@ class _Build:
         self.vertices: list[Float] = []
         self.faces: list[Int] = []
         self.names: list[str] = []
+        self.unit_mm = 1.0
         self._archive = archive
         self._root = _root_part(archive)
         self._unprinted = read_unprinted(archive)
@@ -94,6 +98,7 @@ class _Build:
 
     def place_all(self) -> None:
         model = self._model(self._root)
+        self.unit_mm = model.unit_mm
         to_mm = np.diag([model.unit_mm, model.unit_mm, model.unit_mm, 1.0])
         for item in model.items:
             part = item.part or self._root
