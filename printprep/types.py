@@ -158,14 +158,12 @@ class Density:
 
     rho : float64 of the grid's shape, 1 solid, 0 empty, over the whole model.
     planes : one per body: the plane above which the cavity lies, or None when nothing is filled.
-    filled : one bool per body, True when that body stays solid throughout.
     aim_deg : the lean solved for (margin included), None for the paper's objective.
     reachable_deg : largest lean any filling reaches, None when the lean asked for is feasible.
     """
 
     rho: Float
     planes: tuple[Plane | None, ...]
-    filled: tuple[bool, ...]
     aim_deg: float | None
     reachable_deg: float | None
     certificate: Certificate | None

@@ -53,8 +53,9 @@ def try_manifold(vertices: Float, faces: Int) -> tuple[Manifold, str]:
     from manifold3d import Manifold, Mesh64
 
     mesh = Mesh64(
-        np.ascontiguousarray(vertices, dtype=np.float64),
-        np.ascontiguousarray(faces, dtype=np.uint64),
+        # manifold3d's own arrays are read-only, and its constructor takes none that are.
+        np.require(vertices, np.float64, ["C", "W"]),
+        np.require(faces, np.uint64, ["C", "W"]),
     )
     manifold = Manifold(mesh)
     return manifold, str(manifold.status().name)
@@ -171,17 +172,26 @@ def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ..
 
 def bodies(manifold: Manifold) -> tuple[Manifold, ...]:
     """The disjoint bodies, each with the voids inside it, in the order of ``decompose``."""
-    import manifold3d
-
     solids, voids = shells(manifold)
     owned: list[list[Manifold]] = [[solid] for solid in solids]
     for void in voids:
         owner = innermost(void, solids)
         if owner is not None:
             owned[owner].append(inverted(void))
-    # Disjoint by construction, so the shells need only be listed together.
-    compose = manifold3d.Manifold.compose
-    return tuple(compose(group) if len(group) > 1 else group[0] for group in owned)
+    return tuple(together(group) if len(group) > 1 else group[0] for group in owned)
+
+
+def together(shells: Sequence[Manifold]) -> Manifold:
+    """Disjoint shells as one manifold, each as it is: voids stay voids.
+
+    (manifold3d's ``compose`` unites instead, and a void united with its solid is gone.)
+    """
+    every = [arrays(shell) for shell in shells]
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in every[:-1])])
+    return from_arrays(
+        np.concatenate([vertices for vertices, _ in every]),
+        np.concatenate([faces + start for (_, faces), start in zip(every, starts, strict=True)]),
+    )
 
 
 def innermost(shell: Manifold, solids: Sequence[Manifold]) -> int | None:

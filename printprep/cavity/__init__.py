@@ -1,0 +1,1 @@
+"""From a density to a cavity: field to surface, base, subtraction."""

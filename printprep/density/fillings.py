@@ -1,0 +1,214 @@
+"""The moments that fillings of free voxels can have, and linear programs over them.
+
+Notation
+  s     (M, M c_x, M c_y, M c_z): mass and first moments of all material
+  s₀    the same for the material that is there whatever the filling
+  W     (4, n): the moments one voxel adds when it is full;  ρ ∈ [0, 1]ⁿ the filling
+  Z     {s₀ + Wρ}: a zonotope in four dimensions, however many voxels there are
+  H s ≥ 0, c·s   constraints and cost, linear in s
+
+Every linear functional of s is extremal over Z at a filling that is 0 or 1 by the sign of one
+affine function of position, so Z is explored by such half-space fillings (Dantzig & Wolfe 1960),
+each a mat-vec over the voxels, and the program over the few found so far stays tiny.  The voxels
+near the last half-space then go, with all constraints, to HiGHS, whose multipliers give a lower
+bound over *all* voxels: the certificate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+# Rounds of pricing before the program is handed over; the moments of some tens of half-spaces
+# describe a four-dimensional body to far below a voxel.
+MOST_ROUNDS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Filling:
+    """An optimal filling.
+
+    rho : (n,) in [0, 1];  moments : (4,) its s, s₀ included.
+    multipliers : (k,) ≥ 0, one per constraint;  bound : no filling costs less (weak duality).
+    """
+
+    rho: Float
+    moments: Float
+    multipliers: Float
+    bound: float
+
+
+class Fillings:
+    """Half-space fillings of one set of voxels, kept from one program to the next.
+
+    Parameters
+    ----------
+    moments : (4, n), W in the notation above; row 0 positive.
+    """
+
+    def __init__(self, moments: Float) -> None:
+        self.moments = np.ascontiguousarray(moments)
+        total = self.moments.sum(axis=1)
+        self._columns: list[Float] = [np.zeros(4), total]
+
+    def cheapest(self, cost: Float) -> tuple[Float, NDArray[np.bool_]]:
+        """Moments (4,) and voxels of the filling that minimises cost · W ρ."""
+        chosen = cost @ self.moments < 0
+        return self.moments @ chosen, chosen
+
+    def feasible(self, fixed: Float, constraints: Float) -> tuple[float, Float]:
+        """Largest t with H s ≥ t over all fillings, to 1e-9 of the constraints' scale.
+
+        Stops as soon as a positive t is found: enough to know that the program is feasible.
+
+        Parameters
+        ----------
+        fixed : (4,) s₀;  constraints : (k, 4) H.
+
+        Returns
+        -------
+        t, and the moments (4,) of the filling (a mean of half-space fillings) that reaches it.
+        """
+        scale = np.abs(constraints @ (fixed + self._columns[1])).max() + 1e-300
+        while True:
+            columns = np.array(self._columns).T + fixed[:, None]
+            worst, weights, multipliers = _max_min(constraints @ columns)
+            if worst > 1e-9 * scale:
+                break
+            column, _ = self.cheapest(-(multipliers @ constraints))
+            best = float(multipliers @ constraints @ (column + fixed))
+            if best - worst <= 1e-9 * scale or not self._add(column):
+                break
+        return worst, columns @ weights
+
+    def lightest(self, fixed: Float, constraints: Float, gap: float = 1e-7) -> Filling | None:
+        """The filling of least mass with H s ≥ 0, with proof; None when there is none.
+
+        Parameters
+        ----------
+        fixed : (4,) s₀;  constraints : (k, 4) H;  gap : of mass, relative, to prove.
+        """
+        if len(self.moments.T) == 0 or np.all(constraints @ fixed >= 0):
+            return self._nothing_added(fixed, constraints)
+        worst, _ = self.feasible(fixed, constraints)
+        if worst < 0:
+            return None
+        multipliers = self._price(fixed, constraints)
+        return self._finish(fixed, constraints, multipliers, gap)
+
+    def _nothing_added(self, fixed: Float, constraints: Float) -> Filling | None:
+        if np.any(constraints @ fixed < 0):
+            return None
+        empty = np.zeros(self.moments.shape[1])
+        return Filling(empty, fixed, np.zeros(len(constraints)), float(fixed[0]))
+
+    def _price(self, fixed: Float, constraints: Float) -> Float:
+        """Multipliers (k,) near the optimal ones, by column generation."""
+        mass = np.array([1.0, 0.0, 0.0, 0.0])
+        multipliers = np.zeros(len(constraints))
+        for _ in range(MOST_ROUNDS):
+            columns = np.array(self._columns).T + fixed[:, None]
+            value, multipliers = _least_cost(columns[0], constraints @ columns)
+            cost = mass - multipliers @ constraints
+            column, _ = self.cheapest(cost)
+            bound = float(cost @ (column + fixed))
+            if value - bound <= 1e-6 * value or not self._add(column):
+                break
+        return multipliers
+
+    def _finish(self, fixed: Float, constraints: Float, multipliers: Float, gap: float) -> Filling:
+        """Solve exactly over the voxels near the half-space, widening until the gap is proven."""
+        mass = np.array([1.0, 0.0, 0.0, 0.0])
+        count = self.moments.shape[1]
+        near = 500
+        while True:
+            price = (mass - multipliers @ constraints) @ self.moments / self.moments[0]
+            near = min(near, count)
+            band = np.argpartition(np.abs(price), near - 1)[:near]
+            band.sort()
+            rho = (price < 0).astype(float)
+            rho[band] = 0
+            settled = fixed + self.moments @ rho
+            solved = _band_program(settled, constraints, self.moments[:, band])
+            if solved is not None:
+                rho[band], multipliers = solved
+                cost = mass - multipliers @ constraints
+                bound = float(cost @ fixed + np.minimum(cost @ self.moments, 0).sum())
+                moments = fixed + self.moments @ rho
+                if moments[0] - bound <= gap * moments[0] or near == count:
+                    return Filling(rho, moments, multipliers, bound)
+            elif near == count:
+                raise ArithmeticError("a program known to be feasible was found infeasible")
+            near *= 4
+
+    def _add(self, column: Float) -> bool:
+        """Keep a column; False when it is there already."""
+        size = np.abs(self._columns[1]) + 1e-300
+        if any(np.all(np.abs(column - known) <= 1e-13 * size) for known in self._columns):
+            return False
+        self._columns.append(column)
+        return True
+
+
+def _max_min(values: Float) -> tuple[float, Float, Float]:
+    """Largest t with values @ w ≥ t, w ≥ 0, Σw = 1; also w and the multipliers (they sum to 1)."""
+    from scipy.optimize import linprog
+
+    rows, count = values.shape
+    scale = np.abs(values).max() + 1e-300
+    result = linprog(
+        np.append(np.zeros(count), -1.0),
+        A_ub=np.hstack([-values / scale, np.ones((rows, 1))]),
+        b_ub=np.zeros(rows),
+        A_eq=np.append(np.ones(count), 0.0)[None],
+        b_eq=[1.0],
+        bounds=[(0, None)] * count + [(None, None)],
+        method="highs",
+    )
+    multipliers = np.maximum(-result.ineqlin.marginals, 0)
+    return float(result.x[-1] * scale), result.x[:-1], multipliers / multipliers.sum()
+
+
+def _least_cost(costs: Float, values: Float) -> tuple[float, Float]:
+    """Least costs @ w with values @ w ≥ 0, w ≥ 0, Σw = 1, and the multipliers of the rows."""
+    from scipy.optimize import linprog
+
+    scale = np.abs(values).max() + 1e-300
+    unit = costs.max()
+    result = linprog(
+        costs / unit,
+        A_ub=-values / scale,
+        b_ub=np.zeros(len(values)),
+        A_eq=np.ones((1, len(costs))),
+        b_eq=[1.0],
+        method="highs",
+    )
+    if result.status != 0:
+        return float("inf"), np.zeros(len(values))
+    return float(result.fun * unit), np.maximum(-result.ineqlin.marginals, 0) * unit / scale
+
+
+def _band_program(settled: Float, constraints: Float, moments: Float) -> tuple[Float, Float] | None:
+    """Least mass over a few voxels: their densities and the rows' multipliers, or None."""
+    from scipy.optimize import linprog
+
+    rows = constraints @ moments
+    scale = np.abs(rows).max() + 1e-300
+    unit = moments[0].max()
+    result = linprog(
+        moments[0] / unit,
+        A_ub=-rows / scale,
+        b_ub=constraints @ settled / scale,
+        bounds=(0, 1),
+        method="highs",
+    )
+    if result.status != 0:
+        return None
+    return np.clip(result.x, 0, 1), np.maximum(-result.ineqlin.marginals, 0) * unit / scale

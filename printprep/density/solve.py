@@ -1,0 +1,280 @@
+"""The density of a whole part: the base that makes it lightest, and one plane for each body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from printprep.cavity.base import Feet, base_of, feet_of
+from printprep.density.fillings import Fillings
+from printprep.density.lean import LeanSolution, solve_lean
+from printprep.mesh.measure import bodies, mass_properties
+from printprep.stand.contact import contact_of, section_at_bed
+from printprep.types import Base, Certificate, Density, Plane
+from printprep.voxel.domain import with_base
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection, Manifold
+    from numpy.typing import NDArray
+
+    from printprep.profiles import Profile
+    from printprep.voxel.domain import Interior
+
+    Float = NDArray[np.float64]
+
+BasePolicy = Literal["auto", "never", "always"]
+
+# Growth is tried in steps of this, then at half steps around the best: mass is flat there.
+GROWTH_STEP_MM = 0.5
+# Two bases within this share of the mass tie, and the simpler one wins.
+TIE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class BodySolution:
+    """One body: which cells it has, what was solved, and what it weighs at unit density."""
+
+    cells: tuple[int, ...]
+    voxels: NDArray[np.intp]
+    solution: LeanSolution | None
+
+    @property
+    def reached(self) -> float:
+        """Largest lean reached, +inf when the lean asked for is."""
+        if self.solution is None:
+            return -np.inf
+        short = self.solution.reachable_deg
+        return np.inf if short is None else short
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """A base with the lightest filling for it; volumes in mm³ at unit density."""
+
+    base: Base | None
+    parts: tuple[BodySolution, ...]
+    volume_mm3: float
+    bound_mm3: float
+
+    @property
+    def reached(self) -> float:
+        """What its weakest body reaches, degrees; +inf when all stand as asked."""
+        return min(part.reached for part in self.parts)
+
+
+class Program:
+    """The linear programs of one solid, for any base and any lean."""
+
+    def __init__(self, solid: Manifold, interior: Interior, profile: Profile) -> None:
+        self.solid = solid
+        self.interior = interior
+        self.profile = profile
+        self.bodies = bodies(solid)
+        self._moments = [_moments(body) for body in self.bodies]
+        self._sections = [
+            section_at_bed(body, profile.printer.first_layer_mm) for body in self.bodies
+        ]
+        self._body_of_voxel = interior.domain.body[interior.domain.free]
+        self._pools: dict[tuple[int, ...], tuple[NDArray[np.intp], Fillings]] = {}
+        self._feet: Feet | None = None
+
+    def choose(self, policy: BasePolicy, lean_deg: float) -> Choice:
+        """The base of least total mass that reaches the lean; none on a tie.
+
+        When no base reaches it, the one that reaches farthest.
+        """
+        margin = self.profile.stability.lean_margin_deg
+        best: Choice | None = None
+        if policy != "always":
+            best = self.solve(None, lean_deg, margin)
+            if policy == "never" or self._cannot_be_beaten(best):
+                return best
+        for base in self._bases(policy):
+            best = _better(best, self.solve(base, lean_deg, margin))
+        if best is not None and best.base is not None and best.base.growth_mm > 0:
+            for growth in self._around(best.base.growth_mm):
+                base = base_of(self.feet, growth)
+                best = _better(best, self.solve(base, lean_deg, margin))
+        # "always" on a solid whose feet are flat and cannot grow: there is nothing to add.
+        return best if best is not None else self.solve(None, lean_deg, margin)
+
+    def solve(self, base: Base | None, lean_deg: float, margin_deg: float) -> Choice:
+        """The lightest filling of every body for one base."""
+        volume, bound = 0.0, 0.0
+        parts = []
+        for cells, section, fixed in self._standing(base):
+            voxels, pool = self._pool(cells)
+            fixed = fixed - pool.moments.sum(axis=1)
+            contact = contact_of(section)
+            if contact is None:
+                parts.append(BodySolution(cells, voxels, None))
+                volume, bound = volume + fixed[0], bound + fixed[0]
+                continue
+            solution = solve_lean(pool, fixed, contact.footing, lean_deg, margin_deg)
+            parts.append(BodySolution(cells, voxels, solution))
+            volume += float(solution.filling.moments[0])
+            bound += solution.filling.bound
+        return Choice(base, tuple(parts), volume, bound)
+
+    @property
+    def feet(self) -> Feet:
+        """The feet, found when first asked for."""
+        if self._feet is None:
+            printer = self.profile.printer
+            self._feet = feet_of(
+                self.solid,
+                self.profile.stability.base_seat_mm,
+                printer.first_layer_mm,
+                printer.layer_height_mm,
+            )
+        return self._feet
+
+    def _bases(self, policy: BasePolicy) -> Iterator[Base]:
+        limit = self.profile.stability.base_growth_max_mm
+        for growth in np.arange(0.0, limit + 1e-9, GROWTH_STEP_MM):
+            base = base_of(self.feet, float(growth))
+            if base is not None:
+                yield base
+
+    def _around(self, growth_mm: float) -> Iterator[float]:
+        for growth in (growth_mm - GROWTH_STEP_MM / 2, growth_mm + GROWTH_STEP_MM / 2):
+            if 0 < growth <= self.profile.stability.base_growth_max_mm:
+                yield growth
+
+    def _cannot_be_beaten(self, choice: Choice) -> bool:
+        """Standing with nothing filled: any base only adds to that."""
+        return choice.reached == np.inf and all(
+            part.solution is not None and part.solution.plane is None for part in choice.parts
+        )
+
+    def _standing(
+        self, base: Base | None
+    ) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
+        """The bodies that stand apart with a base: which of the solid's, section, moments."""
+        from manifold3d import CrossSection
+
+        if base is None:
+            for number, (section, moments) in enumerate(
+                zip(self._sections, self._moments, strict=True)
+            ):
+                yield (number,), section, moments
+            return
+        first_layer = self.profile.printer.first_layer_mm
+        for cells, pieces in _joined(self.bodies, base.manifold.decompose()):
+            section = CrossSection()
+            moments = np.zeros(4)
+            for number in cells:
+                section = section + self._sections[number]
+                moments = moments + self._moments[number]
+            for piece in pieces:
+                section = section + section_at_bed(piece, first_layer)
+                moments = moments + _moments(piece - self.feet.slab)
+            yield cells, section, moments
+
+    def _pool(self, cells: tuple[int, ...]) -> tuple[NDArray[np.intp], Fillings]:
+        if cells not in self._pools:
+            voxels = np.flatnonzero(np.isin(self._body_of_voxel, cells))
+            self._pools[cells] = voxels, Fillings(self.interior.moments[:, voxels])
+        return self._pools[cells]
+
+
+def density_of(choice: Choice, program: Program) -> Density:
+    """The choice as a density on the grid, with one plane for each body of the solid."""
+    domain = program.interior.domain
+    count = len(program.bodies)
+    planes: list[Plane | None] = [None] * count
+    rho = np.ones(int(domain.free.sum()))
+    for part in choice.parts:
+        if part.solution is None:
+            rho[part.voxels] = 0.0
+            continue
+        rho[part.voxels] = part.solution.filling.rho
+        for cell in part.cells:
+            planes[cell] = part.solution.plane
+    grid = (domain.shell | domain.free | domain.base).astype(float)
+    grid[domain.free] = 1.0 - domain.share[domain.free] * (1.0 - rho)
+    grams = program.profile.material.density_g_cm3 / 1000
+    reached = choice.reached
+    aims = [part.solution.aim_deg for part in choice.parts if part.solution is not None]
+    return Density(
+        rho=grid,
+        planes=tuple(planes),
+        aim_deg=min((aim for aim in aims if aim is not None), default=None),
+        reachable_deg=None if reached == np.inf else max(reached, -90.0),
+        certificate=Certificate(
+            voxel_mass_g=choice.volume_mm3 * grams,
+            bound_g=choice.bound_mm3 * grams,
+            gap=(choice.volume_mm3 - choice.bound_mm3) / choice.volume_mm3,
+        ),
+    )
+
+
+def paper_density(program: Program, choice: Choice) -> Density:
+    """The paper's objective on the same voxels: walls and base in mm, its terms in voxels."""
+    from printprep.density.objective import PaperSettings
+    from printprep.density.paper_domain import PaperDomain
+    from printprep.density.plane import solve_plane
+
+    interior = program.interior
+    domain = interior.domain if choice.base is None else with_base(interior.domain, choice.base.manifold)
+    frozen = domain.shell | domain.base
+    free = domain.share > 0.5
+    solid = frozen | domain.free
+    ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
+    nothing = np.zeros_like(free)
+    voxels = PaperDomain(solid, solid & ~free, free, nothing, free, ground)
+    solution = solve_plane(voxels, PaperSettings(resolution=max(domain.grid.shape)))
+    plane = None if solution.plane is None else solution.plane.in_mm(domain.grid)
+    return Density(
+        rho=solution.smoothed,
+        planes=(plane,) * len(program.bodies),
+        aim_deg=None,
+        reachable_deg=None,
+        certificate=None,
+    )
+
+
+def _better(first: Choice | None, second: Choice) -> Choice:
+    """The lighter of two that stand, else the one that reaches farther; the first on a tie."""
+    if first is None:
+        return second
+    if first.reached == second.reached:
+        lighter = second.volume_mm3 < first.volume_mm3 * (1 - TIE)
+        return second if lighter else first
+    return second if second.reached > first.reached else first
+
+
+def _moments(manifold: Manifold) -> Float:
+    """(4,) volume in mm³ and first moments in mm⁴."""
+    if manifold.is_empty():
+        return np.zeros(4)
+    properties = mass_properties(manifold)
+    return properties.volume_mm3 * np.array([1.0, *properties.centre_mm])
+
+
+def _joined(
+    solids: list[Manifold], pieces: list[Manifold]
+) -> Iterator[tuple[tuple[int, ...], list[Manifold]]]:
+    """Groups of bodies that pieces of a base join, each with its pieces."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = len(solids)
+    touching = [
+        (i, count + j)
+        for j, piece in enumerate(pieces)
+        for i, solid in enumerate(solids)
+        if count == 1 or (solid ^ piece).volume() > 0
+    ]
+    size = count + len(pieces)
+    rows, columns = np.array(touching, dtype=int).reshape(-1, 2).T
+    links = coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size))
+    groups, label = connected_components(links, directed=False)
+    for group in range(groups):
+        members = np.flatnonzero(label == group)
+        cells = tuple(int(m) for m in members if m < count)
+        if cells:
+            yield cells, [pieces[m - count] for m in members if m >= count]

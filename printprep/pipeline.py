@@ -1,0 +1,148 @@
+"""The method, from a model to a part: read, repair, voxelize, solve, carve, check."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from printprep.progress import SILENT, Progress
+from printprep.stopwatch import Stopwatch
+from printprep.types import HollowResult
+
+if TYPE_CHECKING:
+    import trimesh
+
+    from printprep.density.solve import BasePolicy
+    from printprep.profiles import Profile
+    from printprep.types import Model
+
+Objective = Literal["lean", "paper"]
+
+
+def hollow(
+    model: str | Path | trimesh.Trimesh,
+    *,
+    profile: str | Path | Profile = "fdm-pla-0.4",
+    overrides: Mapping[str, object] | None = None,
+    units: str | None = None,
+    up: str = "+z",
+    scale: float | None = None,
+    height_mm: float | None = None,
+    size_mm: float | None = None,
+    resolution: int = 64,
+    lean_deg: float | None = None,
+    objective: Objective = "lean",
+    base: BasePolicy = "auto",
+    progress: Progress = SILENT,
+) -> HollowResult:
+    """Hollow a model: the lightest part that stands at the lean asked for.
+
+    Parameters
+    ----------
+    model : a file (STL, OBJ, PLY, GLB, 3MF) or a trimesh.Trimesh.
+    profile : name or path of a profile, or one already loaded;  overrides : dotted keys on top.
+    units : of the file: mm, cm, m, in;  up : the file's axis that points up.
+    scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
+    resolution : voxels along the longest side for the optimization.
+    lean_deg : the lean at which the part must stand; None takes the profile's.
+    objective : "lean", the linear program, or "paper", DensiCrafter's objective solved as a plane.
+    base : whether material may be added around the feet.
+
+    Raises
+    ------
+    UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
+    """
+    from printprep.check import Subject, run_rules, wall_min_mm
+    from printprep.cavity.surface import cavity_surface
+    from printprep.density.solve import Program
+    from printprep.mesh.repair import repair
+    from printprep.profiles import load_profile
+    from printprep.settle import settle_lean, settle_paper
+    from printprep.stand.stability import stability
+    from printprep.voxel.domain import build_interior
+
+    settings = load_profile(profile, overrides or {})
+    lean = settings.stability.lean_deg if lean_deg is None else lean_deg
+    _check_numbers(resolution, lean)
+    clock = Stopwatch(progress)
+    with clock.stage("read"):
+        placed = _read(model, units, up, scale, height_mm, size_mm)
+    with clock.stage("repair"):
+        solid = repair(placed)
+    with clock.stage("voxelize"):
+        interior = build_interior(
+            solid,
+            resolution=resolution,
+            wall_mm=settings.wall_mm,
+            min_feature_mm=settings.min_feature_mm,
+            margin_mm=settings.stability.base_growth_max_mm,
+        )
+    with clock.stage("base"):
+        program = Program(solid.manifold, interior, settings)
+        choice = program.choose(base, lean)
+    with clock.stage("cavity"):
+        room = cavity_surface(solid.manifold, interior.field, settings.wall_mm)
+    with clock.stage("solve"):
+        settle = settle_paper if objective == "paper" else settle_lean
+        density, part, standing = settle(solid, room, program, choice, lean)
+    first_layer = settings.printer.first_layer_mm
+    with clock.stage("check"):
+        subject = Subject(
+            part=part.manifold,
+            outside=part.outside,
+            cavities=part.cavities,
+            stability=standing,
+            lean_deg=lean,
+            repair=solid.repair,
+            hollowed=True,
+            reachable_deg=density.reachable_deg,
+        )
+        findings = run_rules(subject, settings)
+        wall = wall_min_mm(part)
+        before = stability(solid.manifold, first_layer)
+    grams_per_mm3 = settings.material.density_g_cm3 / 1000
+    return HollowResult(
+        model=placed,
+        solid=solid,
+        part=part,
+        profile=settings,
+        density=density,
+        stability_solid=before,
+        stability=standing,
+        lean_deg=lean,
+        solid_mass_g=solid.manifold.volume() * grams_per_mm3,
+        mass_g=part.manifold.volume() * grams_per_mm3,
+        wall_min_mm=None if wall is None else wall.value_mm,
+        findings=findings,
+        seconds=clock.seconds,
+    )
+
+
+def _read(
+    model: str | Path | trimesh.Trimesh,
+    units: str | None,
+    up: str,
+    scale: float | None,
+    height_mm: float | None,
+    size_mm: float | None,
+) -> Model:
+    from printprep.mesh.place import place
+    from printprep.mesh.read import from_trimesh, read_mesh
+
+    if isinstance(model, str | Path):
+        raw = read_mesh(Path(model), units)
+    else:
+        raw = from_trimesh(model, units=units)
+    return place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
+
+
+def _check_numbers(resolution: int, lean_deg: float) -> None:
+    from printprep.errors import UsageError
+
+    if not 8 <= resolution <= 512:
+        raise UsageError(f"a resolution of {resolution} is not between 8 and 512 voxels")
+    if not 0 <= lean_deg <= 60:
+        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
+
+

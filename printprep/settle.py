@@ -1,0 +1,77 @@
+"""Carve what was solved, weigh what was carved, and solve again where the surface lost some lean.
+
+The program sees voxels, the slicer sees a surface: cut at the plane, without the pieces too small
+to keep, simplified.  The part counts as standing only when that surface does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.cavity.carve import cavities_of, cut, make_part
+from printprep.density.solve import density_of, paper_density
+from printprep.stand.stability import stability
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from printprep.density.solve import Choice, Program
+    from printprep.types import Base, Density, Part, Plane, Solid, Stability
+
+# A new solve aims higher by what was lost and this much more.
+SAFETY_DEG = 0.02
+MOST_SOLVES = 6
+
+
+def settle_lean(
+    solid: Solid, room: Manifold, program: Program, choice: Choice, lean_deg: float
+) -> tuple[Density, Part, Stability]:
+    """The part of the lightest filling whose final surface stands at the lean.
+
+    Where the lean is out of reach the part stands as far as the choice says.
+
+    Parameters
+    ----------
+    room : all that may be cavity;  choice : base and first solution.
+    """
+    margin = program.profile.stability.lean_margin_deg
+    for _ in range(MOST_SOLVES):
+        density = density_of(choice, program)
+        part = carve(solid, choice.base, room, program, density.planes)
+        standing = stability(part.manifold, program.profile.printer.first_layer_mm)
+        if choice.reached < np.inf or standing.tilt_deg is None or standing.tilt_deg >= lean_deg:
+            break
+        margin += lean_deg - standing.tilt_deg + SAFETY_DEG
+        higher = program.solve(choice.base, lean_deg, margin)
+        if density_of(higher, program).aim_deg == density.aim_deg:
+            break
+        choice = higher
+    return density, part, standing
+
+
+def settle_paper(
+    solid: Solid, room: Manifold, program: Program, choice: Choice, lean_deg: float
+) -> tuple[Density, Part, Stability]:
+    """The part of the paper's objective, on the base that the lean program chose.
+
+    The objective knows no lean: it stands as far as it stands.  One plane serves all bodies.
+    """
+    density = paper_density(program, choice)
+    part = carve(solid, choice.base, room, program, density.planes)
+    return density, part, stability(part.manifold, program.profile.printer.first_layer_mm)
+
+
+def carve(
+    solid: Solid,
+    base: Base | None,
+    room: Manifold,
+    program: Program,
+    planes: Sequence[Plane | None],
+) -> Part:
+    """The part with its cavity above the planes."""
+    void = cut(room, program.bodies, planes)
+    return make_part(solid, base, cavities_of(void, program.profile.min_feature_mm))

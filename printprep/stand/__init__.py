@@ -1,0 +1,1 @@
+"""How a part stands: contact, support polygon, tilt angle."""

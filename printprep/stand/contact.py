@@ -1,0 +1,56 @@
+"""Where a part touches the bed: what the slicer prints first.
+
+Contact is the section at half the first layer's height, where a slicer samples that layer; the
+part pivots on the bed, z = 0, about the edges of the section's convex hull.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.stand.footing import Footing
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection, Manifold
+    from numpy.typing import NDArray
+
+# Less than this cannot be printed, let alone carry a part: a tenth of a millimetre squared.
+LEAST_CONTACT_MM2 = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """The first layer of one body.
+
+    polygon_mm : (k, 2) convex hull, counter-clockwise;  area_mm2 : of the section, not the hull.
+    """
+
+    polygon_mm: NDArray[np.float64]
+    area_mm2: float
+
+    @property
+    def footing(self) -> Footing:
+        """The hull's edges as outward normals and offsets; edge i runs from vertex i to i + 1."""
+        along = np.roll(self.polygon_mm, -1, axis=0) - self.polygon_mm
+        outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
+        normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+        return Footing(normals, np.einsum("ij,ij->i", normals, self.polygon_mm))
+
+
+def section_at_bed(manifold: Manifold, first_layer_mm: float) -> CrossSection:
+    """The section that a slicer takes for the first layer."""
+    return manifold.slice(first_layer_mm / 2)
+
+
+def contact_of(section: CrossSection) -> Contact | None:
+    """The contact that a first-layer section makes, None when there is none to speak of."""
+    area = float(section.area())
+    if area < LEAST_CONTACT_MM2:
+        return None
+    polygon = np.asarray(section.hull().to_polygons()[0], dtype=float)
+    along = np.roll(polygon, -1, axis=0) - polygon
+    # Edges shorter than a nanometre have no direction worth the name.
+    return Contact(polygon[np.linalg.norm(along, axis=1) > 1e-6], area)
