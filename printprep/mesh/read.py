@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import json
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -188,10 +188,13 @@ def _own_unit_mm(mesh: Any) -> float:
 
 
 def _read_3mf(path: Path, units: str | None) -> RawMesh:
-    data = path.read_bytes()
-    vertices, faces = _through_trimesh(data, ".3mf", path)
-    mm = MM_PER_UNIT[units] if units else 1.0
-    return _raw(vertices, faces, path.stem, mm * np.eye(3), str(path), None)
+    from printprep.threemf.read import read_3mf
+
+    found = read_3mf(path)
+    # Its vertices are in mm already; file coordinates are those of its build, in its own unit.
+    factor = MM_PER_UNIT[units] / found.unit_mm if units else 1.0
+    raw = _raw(found.vertices, found.faces, path.stem, factor * np.eye(3), str(path), None)
+    return replace(raw, from_file=raw.from_file @ np.diag([*3 * [found.unit_mm], 1.0]))
 
 
 def _raw(

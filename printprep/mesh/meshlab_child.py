@@ -1,0 +1,71 @@
+"""The half of the meshlab rung that runs in a process of its own: it can crash or hang alone.
+
+Started as a script with two paths and a recipe: a .npz to read (vertices, faces), one to write.
+It imports nothing of printprep, so that it needs no package path.  Exit status: 0 done, 3 pymeshlab
+cannot be loaded here, 4 the filters refused the mesh; the reason is the last line on stderr.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+CANNOT_LOAD = 3
+REFUSED = 4
+RECIPES = ("holes", "cracks")  # gentlest first
+
+# Corners this close, in percent of the bounding box's diagonal, are the two sides of a crack.
+_CRACK_PERCENT = 0.005
+# Longest hole that is closed, in boundary edges; whether closing it was right the caller judges.
+_LONGEST_HOLE = 100_000
+
+
+def main(source: str, target: str, recipe: str) -> int:
+    import numpy as np
+
+    try:
+        import pymeshlab
+    except (ImportError, OSError) as error:
+        sys.stderr.write(f"{error}\n")
+        return CANNOT_LOAD
+    with np.load(source) as given:
+        mesh = pymeshlab.Mesh(given["vertices"], given["faces"].astype(np.int32))
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(mesh)
+    try:
+        mend(meshes, recipe, pymeshlab.PercentageValue(_CRACK_PERCENT))
+    except pymeshlab.PyMeshLabException as error:
+        sys.stderr.write(f"{error}\n")
+        return REFUSED
+    mended = meshes.current_mesh()
+    np.savez(target, vertices=mended.vertex_matrix(), faces=mended.face_matrix().astype(np.int64))
+    return 0
+
+
+def mend(meshes: Any, recipe: str, crack: Any) -> None:
+    """Drop what no solid can have, turn faces alike, close holes; "cracks" joins their sides."""
+    if recipe == "cracks":
+        meshes.meshing_merge_close_vertices(threshold=crack)
+    meshes.meshing_remove_duplicate_faces()
+    meshes.meshing_remove_null_faces()
+    _two_manifold(meshes)
+    meshes.meshing_re_orient_faces_coherently()
+    meshes.meshing_close_holes(
+        maxholesize=_LONGEST_HOLE, selfintersection=False, newfaceselected=False
+    )
+    _two_manifold(meshes)
+    meshes.meshing_close_holes(
+        maxholesize=_LONGEST_HOLE, selfintersection=False, newfaceselected=False
+    )
+    meshes.meshing_remove_unreferenced_vertices()
+
+
+def _two_manifold(meshes: Any) -> None:
+    """No edge with three faces, no vertex where two fans touch; cutting can leave either again."""
+    for _ in range(3):
+        meshes.meshing_repair_non_manifold_edges(method="Remove Faces")
+        meshes.meshing_repair_non_manifold_vertices(vertdispratio=0.0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

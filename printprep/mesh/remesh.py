@@ -1,0 +1,132 @@
+"""The last rung: a new surface around all that the winding number calls inside.
+
+Notation: d the exact distance to the model's triangles, w the generalized winding number.  The
+field is f = d · clamp(4(w − ½), −1, 1), and the surface f = 0.  Where the model is closed w is
+within ¼ of 0 or 1, f is the signed distance and the surface is the model's.  Where it is open w
+runs smoothly from 0 to 1 across the gap and closes it along w = ½.  f is continuous: w jumps only
+on the triangles, where d = 0.
+
+Marching cubes: Lorensen and Cline 1987, in the topologically consistent cases of Lewiner 2003.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.mesh.measure import distance_to_mesh_mm, signed_volumes, together, try_manifold, winding
+from printprep.mesh.shells import Candidate, Refusal
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.types import Bool, Float, Int
+
+CELLS = 200  # along the longest side
+_BLOCK = 4  # cells along an edge of the coarse blocks that decide where to look closely
+_MARGIN = 2 * _BLOCK  # cells around the model
+_LEAST = 1e-3  # |f| is kept above this share of a cell, or triangles degenerate at grid points
+_SIMPLIFY = 0.05  # cells the surface may move when triangles are merged
+_CRUMB_CELLS = 8  # a shell of fewer cells is noise of the winding number around open edges
+_CORNERS_LOST = 0.1  # cells lost on the average over the area where edges are cut off
+
+
+def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
+    """The solid {w > ½} of a mesh (vertices (n, 3) mm, faces (m, 3)), as marching cubes sees it."""
+    from skimage.measure import marching_cubes
+
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    pitch = float((high - low).max()) / CELLS
+    field = _field(vertices, faces, low - _MARGIN * pitch, high - low, pitch)
+    if not (field > 0).any():
+        return Refusal("no cell of the new grid lies inside it")
+    corners, triangles, _, _ = marching_cubes(field, 0.0, allow_degenerate=False)
+    points = corners.astype(np.float64) * pitch + (low - _MARGIN * pitch)
+    triangles = triangles.astype(np.int64)
+    if signed_volumes((points - points.mean(axis=0))[triangles]).sum() < 0:
+        triangles = triangles[:, ::-1]
+    manifold, status = try_manifold(points, triangles)
+    if status != "NoError":
+        return Refusal(f"the new surface is no manifold ({status})")
+    manifold, crumbs = _without_crumbs(manifold.simplify(_SIMPLIFY * pitch), pitch)
+    if manifold.is_empty():
+        return Refusal("all of it is thinner than a cell of the new grid")
+    actions = [f"Made a new surface by winding number, in cells of {pitch:.3g} mm."]
+    if crumbs:
+        actions.append(f"Left out {crumbs} crumb{'s' if crumbs > 1 else ''} at open edges.")
+    return Candidate(
+        manifold,
+        tuple(actions),
+        resolution_mm=pitch,
+        slack_mm3=_CORNERS_LOST * pitch * float(manifold.surface_area()),
+    )
+
+
+def _without_crumbs(manifold: Manifold, pitch: float) -> tuple[Manifold, int]:
+    parts = manifold.decompose()
+    kept = [part for part in parts if abs(part.volume()) >= _CRUMB_CELLS * pitch**3]
+    return together(kept), len(parts) - len(kept)
+
+
+def _field(vertices: Float, faces: Int, origin: Float, extents: Float, pitch: float) -> Float:
+    """f at the nodes of the grid, (nx, ny, nz) in x, y, z; far from the surface only its sign."""
+    blocks = np.ceil((extents / pitch + 2 * _MARGIN) / _BLOCK).astype(np.int64)
+    coarse = _nodes(np.ones(blocks + 1, dtype=bool), origin, pitch * _BLOCK)
+    w = winding(coarse, vertices, faces).reshape(blocks + 1)
+    d = distance_to_mesh_mm(coarse, vertices, faces).reshape(blocks + 1)
+    close = _close_blocks(w, d, pitch)
+    # A node far away has the sign of its block, which is that of any of the block's corners.
+    f = np.where(_spread(w[:-1, :-1, :-1] > 0.5), pitch, -pitch).astype(np.float64)
+    near = _spread(close)
+    points = _nodes(near, origin, pitch)
+    w_near = winding(points, vertices, faces)
+    f[near] = np.where(w_near > 0.5, pitch, -pitch)
+    crossed = _crossed(f > 0) & near
+    at = crossed[near]
+    d_near = distance_to_mesh_mm(points[at], vertices, faces)
+    value = d_near * np.clip(4 * (w_near[at] - 0.5), -1, 1)
+    least = _LEAST * pitch
+    f[crossed] = np.where(w_near[at] > 0.5, np.maximum(value, least), np.minimum(value, -least))
+    return f
+
+
+def _close_blocks(w: Float, d: Float, pitch: float) -> Bool:
+    """Blocks the surface may pass through: near the triangles, or with w undecided across them."""
+    reach = np.sqrt(3) / 2 * _BLOCK * pitch  # from anywhere in a block to its nearest corner
+    slices = (slice(None, -1), slice(1, None))
+    corners = [(i, j, k) for i in slices for j in slices for k in slices]
+    nearest = np.minimum.reduce([d[corner] for corner in corners])
+    lowest = np.minimum.reduce([w[corner] for corner in corners])
+    highest = np.maximum.reduce([w[corner] for corner in corners])
+    result: Bool = (nearest <= reach) | ((lowest < 0.6) & (highest > 0.4))
+    return result
+
+
+def _spread(blocks: Bool) -> Bool:
+    """A value per block, to the nodes of its cells; a node between blocks is true if one is."""
+    fine: Bool = blocks
+    for axis in range(3):
+        fine = np.repeat(fine, _BLOCK, axis=axis)
+        fine = np.concatenate([fine, np.take(fine, [-1], axis=axis)], axis=axis)
+        earlier = np.take(fine, np.maximum(np.arange(fine.shape[axis]) - 1, 0), axis=axis)
+        fine = np.maximum(fine, earlier)
+    return fine
+
+
+def _nodes(wanted: Bool, origin: Float, pitch: float) -> Float:
+    """(n, 3) positions of the nodes wanted, in the order of a flattened grid."""
+    return origin + pitch * np.argwhere(wanted)
+
+
+def _crossed(inside: Bool) -> Bool:
+    """Nodes with a neighbour, along an edge of the grid, on the other side of the surface."""
+    result = np.zeros_like(inside)
+    for axis in range(3):
+        a = [slice(None)] * 3
+        b = [slice(None)] * 3
+        a[axis], b[axis] = slice(None, -1), slice(1, None)
+        differs = inside[tuple(a)] != inside[tuple(b)]
+        result[tuple(a)] |= differs
+        result[tuple(b)] |= differs
+    return result
