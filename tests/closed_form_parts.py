@@ -9,7 +9,7 @@ from manifold3d import Manifold
 
 from printprep.check import Subject, as_written, run_rules, subject_of_solid
 from printprep.mesh.measure import arrays
-from printprep.profiles import load_profile
+from printprep.profiles import Profile, load_profile
 from printprep.stand.stability import stability
 from printprep.types import Base, Certificate, Density, HollowResult, Model, Part, Repair, Solid
 
@@ -34,7 +34,7 @@ def hollow_result(
     size: float = 20.0,
     wall: float = 2.0,
     *,
-    profile: str = "fdm-pla-0.4",
+    profile: str | Profile = "fdm-pla-0.4",
     with_base: bool = False,
     name: str = "block",
     **changes: object,
@@ -73,7 +73,6 @@ def hollow_result(
         density=Density(
             rho=np.zeros((2, 2, 2)),
             planes=(None,),
-            filled=(False,),
             aim_deg=10.5,
             reachable_deg=None,
             certificate=Certificate(voxel_mass_g=4.9, bound_g=4.9 - 1e-9, gap=1e-9 / 4.9),

@@ -1,0 +1,162 @@
+"""What was found out, as JSON for programs: numbers in the units their keys name, never NaN."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from printprep import __version__
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+    from printprep.types import Base, Finding, HollowResult, Repair
+
+
+def to_text(data: dict[str, Any]) -> str:
+    """One JSON object, in ASCII so that any terminal and pipe takes it.
+
+    Raises ValueError for a number that is not finite: there is none in a sound report.
+    """
+    return json.dumps(data, indent=2, allow_nan=False)
+
+
+def result_json(
+    result: HollowResult, *, model: str | None = None, output: str | None = None
+) -> dict[str, Any]:
+    """All that ``hollow`` found out.
+
+    model : the file as the user named it, else its stem;  output : where the part was written,
+    None when it was not.
+    """
+    facts = _facts(result)
+    return {
+        **facts,
+        "model": facts["model"] if model is None else model,
+        "output": output,
+        "seconds": {stage: round(value, 3) for stage, value in result.seconds.items()},
+    }
+
+
+def embedded_json(result: HollowResult) -> dict[str, Any]:
+    """The same for inside the file: no time, path, user or machine, so that bytes repeat."""
+    return _facts(result)
+
+
+def check_json(
+    subject: Subject, findings: Sequence[Finding], profile: Profile, *, model: str
+) -> dict[str, Any]:
+    """What ``check`` found out about a file."""
+    volume_mm3 = float(subject.part.volume())
+    wall = subject.wall
+    return {
+        "printprep": __version__,
+        "model": model,
+        "profile": profile.name,
+        "size_mm": [number(side) for side in subject.size_mm],
+        "volume_mm3": number(volume_mm3),
+        "mass_g": number(volume_mm3 * profile.material.density_g_cm3 / 1000),
+        "tilt_deg": number(subject.stability.tilt_deg),
+        "lean_deg": number(subject.lean_deg),
+        "wall_min_mm": None if wall is None else number(wall.value_mm),
+        "cavities": _cavities(subject.cavities),
+        "findings": [finding_json(item) for item in findings],
+        "repair": _repair(subject.repair),
+    }
+
+
+def finding_json(finding: Finding) -> dict[str, Any]:
+    """A finding with all its fields, null where it has none."""
+    return {
+        "rule": finding.rule,
+        "severity": finding.severity,
+        "message": finding.message,
+        "fix": finding.fix,
+        "value": number(finding.value),
+        "limit": number(finding.limit),
+        "unit": finding.unit,
+        "at_mm": None if finding.at_mm is None else _place(finding.at_mm),
+    }
+
+
+def number(value: float | None, digits: int = 6) -> float | None:
+    """A plain number without the digits that are only noise."""
+    return None if value is None else float(f"{value:.{digits}g}") + 0.0
+
+
+def _facts(result: HollowResult) -> dict[str, Any]:
+    profile = result.profile
+    certificate = result.density.certificate
+    return {
+        "printprep": __version__,
+        "model": result.model.name,
+        "profile": profile.name,
+        "settings": profile.model_dump(mode="json", exclude={"name"}),
+        "placement": [[number(item, 9) for item in row] for row in result.part.placement],
+        "solid_mass_g": number(result.solid_mass_g),
+        "mass_g": number(result.mass_g),
+        "mass_ratio": number(result.mass_g / result.solid_mass_g),
+        "tilt_solid_deg": number(result.stability_solid.tilt_deg),
+        "tilt_deg": number(result.stability.tilt_deg),
+        "lean_deg": number(result.lean_deg),
+        "aim_deg": number(result.density.aim_deg),
+        "reachable_deg": number(result.density.reachable_deg),
+        "wall_min_mm": number(result.wall_min_mm),
+        "cavities": _cavities(result.part.cavities),
+        "base": _base(result.part.base, base_mass_g(result)),
+        "certificate": None
+        if certificate is None
+        else {
+            "voxel_mass_g": number(certificate.voxel_mass_g, 9),
+            "bound_g": number(certificate.bound_g, 9),
+            "gap": number(certificate.gap, 3),
+        },
+        "findings": [finding_json(item) for item in result.findings],
+        "repair": _repair(result.solid.repair),
+    }
+
+
+def base_mass_g(result: HollowResult) -> float:
+    """Mass of the material the base adds to the model."""
+    added_mm3 = float(result.part.outside.volume() - result.solid.manifold.volume())
+    return added_mm3 * float(result.profile.material.density_g_cm3) / 1000
+
+
+def _base(base: Base | None, mass_g: float) -> dict[str, float | None] | None:
+    if base is None:
+        return None
+    return {
+        "seat_mm": number(base.seat_mm),
+        "growth_mm": number(base.growth_mm),
+        "mass_g": number(mass_g),
+    }
+
+
+def _cavities(cavities: Sequence[Manifold]) -> dict[str, Any]:
+    items = [
+        {
+            "volume_mm3": number(cavity.volume()),
+            "bounds_mm": [_place(corner) for corner in np.reshape(cavity.bounding_box(), (2, 3))],
+        }
+        for cavity in cavities
+    ]
+    return {"count": len(items), "items": items}
+
+
+def _repair(repair: Repair) -> dict[str, Any]:
+    return {
+        "rung": repair.rung,
+        "actions": list(repair.actions),
+        "moved_max_mm": number(repair.moved_max_mm, 3),
+        "moved_mean_mm": number(repair.moved_mean_mm, 3),
+        "resolution_mm": number(repair.resolution_mm),
+    }
+
+
+def _place(point: Sequence[float]) -> list[float]:
+    return [round(float(value), 3) + 0.0 for value in point]

@@ -1,0 +1,158 @@
+"""What was found out, for a person at a terminal: short, readable without colour, 80 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from printprep.report.json import base_mass_g
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+    from printprep.types import Finding, HollowResult, Repair
+
+_STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
+# Rules whose information the table has already given.
+_TOLD = frozenset({"sealed-cavity"})
+
+
+def show_result(console: Console, result: HollowResult, *, output: str, verbose: bool) -> None:
+    """The summary of ``hollow``: what changed, what was found, where the file is."""
+    facts = _facts_table()
+    ratio = 100 * result.mass_g / result.solid_mass_g
+    facts.add_row(
+        "mass",
+        f"{result.solid_mass_g:.4g} g → {result.mass_g:.4g} g ({ratio:.0f} % of the solid)",
+    )
+    before, after = result.stability_solid.tilt_deg, result.stability.tilt_deg
+    facts.add_row(
+        "tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean_deg:g}°)"
+    )
+    if result.wall_min_mm is not None:
+        facts.add_row(
+            "thinnest wall",
+            f"{result.wall_min_mm:.2f} mm (profile {result.profile.wall_mm:g} mm)",
+        )
+    facts.add_row("cavities", _cavities(result.part.cavities))
+    facts.add_row("base", _base(result))
+    certificate = result.density.certificate
+    if certificate is not None:
+        facts.add_row(
+            "lightest",
+            f"proved on the voxels to {max(certificate.gap, 0.0):.1g} of "
+            f"{certificate.voxel_mass_g:.4g} g",
+        )
+    if verbose and result.density.aim_deg is not None:
+        facts.add_row("solved for", f"{result.density.aim_deg:.2f}°, margin included")
+    _add_repair(facts, result.solid.repair)
+    if verbose:
+        total = sum(result.seconds.values())
+        stages = ", ".join(f"{stage} {value:.2f}" for stage, value in result.seconds.items())
+        facts.add_row("seconds", f"{total:.2f} ({stages})")
+    console.print(facts)
+    show_findings(console, result.findings)
+    console.print()
+    console.print(Text.assemble("Written: ", (output, "bold")), soft_wrap=True)
+    for sentence in _advice(result, output):
+        console.print(Text(sentence))
+
+
+def show_check(
+    console: Console, subject: Subject, findings: Sequence[Finding], profile: Profile
+) -> None:
+    """The summary of ``check``."""
+    facts = _facts_table()
+    facts.add_row("size", " × ".join(f"{side:.4g}" for side in subject.size_mm) + " mm")
+    mass_g = subject.part.volume() * profile.material.density_g_cm3 / 1000
+    facts.add_row("mass", f"{mass_g:.4g} g in {profile.material.name}")
+    tilt = _lean(subject.stability.tilt_deg)
+    facts.add_row("tips at", f"{tilt} (asked to stand {subject.lean_deg:g}°)")
+    if subject.wall is not None:
+        facts.add_row(
+            "thinnest wall", f"{subject.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
+        )
+    facts.add_row("cavities", _cavities(subject.cavities))
+    console.print(facts)
+    show_findings(console, findings)
+    if not findings:
+        console.print("\nNothing to complain of.")
+
+
+def show_findings(console: Console, findings: Sequence[Finding]) -> None:
+    """Each finding with its way out; information the table has given is not repeated."""
+    told = [item for item in findings if item.severity != "info" or item.rule not in _TOLD]
+    if not told:
+        return
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for item in told:
+        words = Text(item.message)
+        if item.fix:
+            words.append(f"\n→ {item.fix}", style="dim")
+        words.append(f"  [{item.rule}]", style="dim")
+        table.add_row(Text(item.severity, style=_STYLE[item.severity]), words)
+    console.print()
+    console.print(table)
+
+
+def _facts_table() -> Table:
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    return table
+
+
+def _lean(tilt_deg: float | None) -> str:
+    if tilt_deg is None:
+        return "no contact"
+    return f"{tilt_deg:.1f}°" if tilt_deg >= 0 else f"{tilt_deg:.1f}° (falls by itself)"
+
+
+def _cavities(cavities: Sequence[Manifold]) -> str:
+    if not cavities:
+        return "none"
+    volume = sum(cavity.volume() for cavity in cavities)
+    return f"{len(cavities)}, {volume / 1000:.3g} cm³"
+
+
+def _base(result: HollowResult) -> str:
+    base = result.part.base
+    if base is None:
+        return "none"
+    grown = f", footprint grown by {base.growth_mm:.2g} mm" if base.growth_mm else ""
+    return f"feet seated {base.seat_mm:.2g} mm{grown}, {base_mass_g(result):.3g} g"
+
+
+def _add_repair(facts: Table, repair: Repair) -> None:
+    if repair.rung == "as-is":
+        return
+    done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
+    facts.add_row("repair", f"{done}; surface moved by up to {repair.moved_max_mm:.2g} mm")
+
+
+def _advice(result: HollowResult, output: str) -> list[str]:
+    """How to print it: what the file cannot say itself."""
+    profile = result.profile
+    if profile.process != "fdm":
+        return []
+    printer = profile.printer
+    advice = [
+        f"Print it with a first layer of {printer.first_layer_mm:g} mm, a {printer.nozzle_mm:g} mm "
+        f"nozzle and {profile.material.name}: a model file cannot carry these "
+        f"(`printprep profiles export` writes them for PrusaSlicer)."
+    ]
+    plate_only = "support_material_buildplate_only" in profile.slicer.object_settings
+    if plate_only and result.part.cavities and output.lower().endswith(".3mf"):
+        advice.append(
+            "Supports, if you switch them on, start from the build plate only, or they would fill "
+            "the cavity: supports outside that would rest on the model are lost."
+        )
+    return advice
