@@ -1,0 +1,125 @@
+"""What a profile may say: its keys, their ranges, and which of them exclude each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+
+def _bounded(low: float, high: float, **more: Any) -> Any:
+    return Field(ge=low, le=high, allow_inf_nan=False, strict=True, **more)
+
+
+def _setting_text(value: object) -> object:
+    """TOML numbers and booleans as a slicer writes them; anything else is left to pydantic."""
+    if isinstance(value, bool):
+        return str(int(value))
+    return f"{value:g}" if isinstance(value, int | float) else value
+
+
+def _settings(value: object) -> object:
+    if not isinstance(value, Mapping):
+        return value
+    if "post_process" in value:  # a file that carries commands must never leave this program
+        raise PydanticCustomError("forbidden", "must not hold post_process, which runs commands")
+    return {key: _setting_text(item) for key, item in value.items()}
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=True)
+
+
+_BedSide = Annotated[float, _bounded(10, 5000)]
+
+
+class Printer(_Frozen):
+    """The machine; nozzle and line width only where there is a nozzle."""
+
+    nozzle_mm: float | None = _bounded(0.1, 2.0, default=None)
+    line_width_mm: float | None = _bounded(0.1, 4.0, default=None)
+    layer_height_mm: float = _bounded(0.005, 2.0)
+    first_layer_mm: float = _bounded(0.005, 2.0)
+    bed_mm: tuple[_BedSide, _BedSide, _BedSide] = Field(
+        description="must be [x, y, z], three numbers between 10 and 5000"
+    )
+
+
+class Material(_Frozen):
+    """What the part is made of, as printed."""
+
+    name: str = Field(min_length=1, max_length=80, strict=True)
+    density_g_cm3: float = _bounded(0.1, 25.0)
+
+
+class Drain(_Frozen):
+    """Holes per sealed cavity; count 0 where the process leaves nothing inside to drain."""
+
+    diameter_mm: float | None = _bounded(0.3, 50.0, default=None)
+    count: int = Field(default=0, ge=0, le=16, strict=True)
+
+
+class Stability(_Frozen):
+    """The lean a part must stand, solved for with a margin, and how far a base may go."""
+
+    lean_deg: float = _bounded(0.0, 60.0)
+    lean_margin_deg: float = _bounded(0.0, 10.0)
+    base_seat_mm: float = _bounded(0.0, 20.0)
+    base_growth_max_mm: float = _bounded(0.0, 50.0)
+
+
+class SlicerSettings(_Frozen):
+    """Keys every object of the 3MF carries, and the slicer that checks it (None: no check)."""
+
+    object_settings: Annotated[dict[str, str], BeforeValidator(_settings)] = {}
+    check_with: Literal["prusa-slicer"] | None = None
+
+
+class Profile(_Frozen):
+    """One printer, material and process, with the limits that a part has to keep."""
+
+    name: str = Field(min_length=1, strict=True)
+    process: Literal["fdm", "resin", "powder"]
+    wall_mm: float = _bounded(0.2, 50.0)
+    min_feature_mm: float = _bounded(0.1, 50.0)
+    overhang_deg: float = _bounded(0.0, 90.0)
+    printer: Printer
+    material: Material
+    drain: Drain = Drain()
+    stability: Stability
+    slicer: SlicerSettings = SlicerSettings()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        printer, drain = self.printer, self.drain
+        if self.process == "fdm":
+            for key in ("nozzle_mm", "line_width_mm"):
+                if getattr(printer, key) is None:
+                    raise _impossible(f"printer.{key}", "is needed where process is fdm")
+            assert printer.nozzle_mm is not None and printer.line_width_mm is not None
+            _within("printer.layer_height_mm", printer.layer_height_mm, 0.0, printer.nozzle_mm)
+            _within("printer.first_layer_mm", printer.first_layer_mm, 0.0, printer.nozzle_mm)
+            low = 0.5 * printer.nozzle_mm
+            _within("printer.line_width_mm", printer.line_width_mm, low, 3 * printer.nozzle_mm)
+            _within("wall_mm", self.wall_mm, printer.line_width_mm, 50.0)
+            _within("min_feature_mm", self.min_feature_mm, printer.line_width_mm, 50.0)
+        else:
+            for key in ("nozzle_mm", "line_width_mm"):
+                if getattr(printer, key) is not None:
+                    raise _impossible(f"printer.{key}", f"has no meaning for {self.process}")
+            if self.slicer.check_with is not None:
+                raise _impossible("slicer.check_with", f"has no slicer for {self.process}")
+        if drain.count and drain.diameter_mm is None:
+            raise _impossible("drain.diameter_mm", "is needed where drain.count is above 0")
+        return self
+
+
+def _impossible(key: str, fact: str) -> PydanticCustomError:
+    return PydanticCustomError("impossible", "{fact}", {"key": key, "fact": fact})
+
+
+def _within(key: str, value_mm: float, low_mm: float, high_mm: float) -> None:
+    if not low_mm <= value_mm <= high_mm:
+        raise _impossible(key, f"is {value_mm:g}, must be between {low_mm:g} and {high_mm:g}")
