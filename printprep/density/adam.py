@@ -7,12 +7,15 @@ result is the density of the last evaluation, not of the best one.
 
 One step on the device is a sigmoid, a thin mat-vec each way (4 × n, see `linear_form`) and Adam's
 update, in float32 and in place; the four moments and the few contact voxels go to the host, where
-the closed forms of `objective` turn them into four slopes.
+the closed forms of `objective` turn them into four slopes.  On the CPU one thread does it: a step
+is shorter than waking a second one, and sums then keep their order on every machine.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,7 +78,7 @@ def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float
     def put(array: np.ndarray) -> torch.Tensor:
         return torch.from_numpy(np.ascontiguousarray(array)).to(where)
 
-    with torch.inference_mode():
+    with _one_thread(), torch.inference_mode():
         theta = put(start)
         W = put(form.W.astype(np.float32))
         neighbours, reached, sources = put(form.neighbours), put(near), put(table)
@@ -108,6 +111,19 @@ def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float
             work.div_(debias).add_(EPS)
             theta.addcdiv_(first, work, value=-rate / (1 - BETA1 ** (step + 1)))
         return inner.cpu().numpy().astype(np.float64), trace
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """torch computes on one CPU thread, and on as many as before afterwards."""
+    import torch
+
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def _reached(form: LinearForm) -> tuple[np.ndarray, np.ndarray]:

@@ -70,7 +70,8 @@ class LinearForm:
 
     def moments(self, rho: Float) -> Float:
         """(4,) s of the free densities (n,)."""
-        return self.s0 + self.W @ rho
+        # einsum sums in one thread and one order; a threaded BLAS has neither, and is no faster.
+        return self.s0 + np.einsum("kn,n->k", self.W, rho)
 
     def contact(self, rho: Float) -> Float:
         """(m,) 4^(−k) ρ̃ of the contenders, for the free densities (n,)."""
@@ -119,12 +120,12 @@ class LinearForm:
     def gradient(self, rho: Float) -> tuple[Float, Float]:
         """∂L/∂ρ (n,) and q = ∂L/∂s (4,) at the free densities (n,)."""
         _, q, by_contact = self.pull(self.moments(rho), self.contact(rho))
-        slope: Float = q @ self.W
+        slope: Float = np.einsum("k,kn->n", q, self.W)
         if len(by_contact):
-            padded = np.append(slope, 0.0)
-            share = by_contact / self.neighbours.shape[1]
-            np.add.at(padded, self.neighbours, share[:, None])
-            slope = padded[:-1]
+            width = self.neighbours.shape[1]
+            spread = np.repeat(by_contact / width, width)
+            bins = np.bincount(self.neighbours.reshape(-1), spread, minlength=self.count + 1)
+            slope += bins[:-1]
         return slope, q
 
     def field(self, rho: Float) -> Float:

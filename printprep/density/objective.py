@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from printprep.density.paper_settings import PaperSettings
+from printprep.density.paper_settings import PaperSettings as PaperSettings
 
 Float = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ carve along a plane.)
 Each step goes to the vertex ρ' = [gradient < 0] by an exact line search on the segment (the
 conditional-gradient method of Frank & Wolfe, 1956), on which s is four scalars that move linearly.
 The contact is a maximum, so the loss can have more than one stationary point: the solver starts
-from the bare shell, as the authors do, and from everything filled, and keeps the better end.  On a symmetric model a whole layer can tie on
-the plane and the optimum lie between filling and leaving it; such a layer is rounded when that
-costs less than the tolerance of the solution, and left fractional otherwise.
+from the bare shell, as the authors do, and from everything filled, and keeps the better end.  On a
+symmetric model a whole layer can tie on the plane and the optimum lie between filling and leaving
+it; such a layer is left fractional, and said to be.
 """
 
 from __future__ import annotations
@@ -28,10 +28,12 @@ from printprep.density.paper_domain import PaperDomain
 from printprep.density.paper_settings import PaperSettings
 from printprep.types import Grid, Plane
 
-MAX_STEPS = 100
-GAP = 1e-6  # stop when the linear model promises less than this share of the loss
+MAX_STEPS = 60
+GAP = 1e-9  # stop when the linear model promises less than this share of the loss
+STALL = 1e-8, 3  # stop after this many steps in a row that each gain less than this share
+ROUNDING = 1e-8  # share of the loss that leaving no voxel fractional may cost
 SAMPLES = 17  # of the segment, before the best bracket is refined
-REFINEMENTS = 32  # golden-section steps: the bracket shrinks by 0.618^32 < 1e-6
+SHARE = 1e-10  # of the segment, to which its least loss is located
 END = 1e-4  # a segment whose end is better than this far before it is taken to its end
 
 
@@ -87,7 +89,7 @@ def solve_plane(domain: PaperDomain, settings: PaperSettings) -> PaperSolution:
     plane = _plane(form, rho)
     rounded = (rho > 0.5).astype(np.float64)
     loss = form.terms(rounded).total
-    if loss <= trace[-1] + GAP * max(1.0, abs(trace[-1])):
+    if loss <= trace[-1] + ROUNDING * max(1.0, abs(trace[-1])):
         rho, trace = rounded, np.append(trace, loss)
     return package(form, rho, trace, plane)
 
@@ -114,15 +116,18 @@ def _descend(form: LinearForm, start: Float) -> tuple[Float, Float]:
     """Free densities (n,) at a stationary point and the loss at every step on the way."""
     rho = start
     trace = [form.terms(rho).total]
-    for _ in range(MAX_STEPS):
+    small, patience = STALL
+    stalled = 0
+    while len(trace) <= MAX_STEPS and stalled < patience:
+        scale = max(1.0, abs(trace[-1]))
         slope, _ = form.gradient(rho)
         vertex = (slope < 0).astype(np.float64)
-        gap = float(slope @ (rho - vertex))
-        if gap <= GAP * max(1.0, abs(trace[-1])):
+        if float(np.sum(slope * (rho - vertex))) <= GAP * scale:
             break
         loss, share = _line_search(form, rho, vertex)
         if loss >= trace[-1]:
             break
+        stalled = stalled + 1 if trace[-1] - loss < small * scale else 0
         rho = vertex if share == 1.0 else rho + share * (vertex - rho)
         trace.append(loss)
     return rho, np.array(trace)
@@ -145,30 +150,18 @@ def _line_search(form: LinearForm, rho: Float, vertex: Float) -> tuple[float, fl
 
 
 def _minimize(loss: Callable[[float], float]) -> tuple[float, float]:
-    """(least value, where) of a function on [0, 1]: sampled, then golden-section in the bracket."""
+    """(least value, where) of a function on [0, 1]: sampled, then Brent's method in the bracket."""
+    from scipy.optimize import minimize_scalar
+
     grid = np.linspace(0.0, 1.0, SAMPLES)
     values = [loss(float(share)) for share in grid]
     best = int(np.argmin(values))
     least, at = values[best], float(grid[best])
     if at == 1.0 and least <= loss(1.0 - END):
         return least, at
-    low, high = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, SAMPLES - 1)])
-    ratio = (np.sqrt(5.0) - 1) / 2
-    a, b = high - ratio * (high - low), low + ratio * (high - low)
-    fa, fb = loss(a), loss(b)
-    for _ in range(REFINEMENTS):
-        if fa < fb:
-            high, b, fb = b, a, fa
-            a = high - ratio * (high - low)
-            fa = loss(a)
-        else:
-            low, a, fa = a, b, fb
-            b = low + ratio * (high - low)
-            fb = loss(b)
-    for value, where in ((fa, a), (fb, b)):
-        if value < least:
-            least, at = value, where
-    return least, at
+    bracket = (float(grid[max(best - 1, 0)]), float(grid[min(best + 1, SAMPLES - 1)]))
+    found = minimize_scalar(loss, bounds=bracket, method="bounded", options={"xatol": SHARE})
+    return min((least, at), (float(found.fun), float(found.x)))
 
 
 def _plane(form: LinearForm, rho: Float) -> VoxelPlane | None:
