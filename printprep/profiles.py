@@ -122,7 +122,7 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
         path = tuple(part for part in item["loc"] if isinstance(part, str))
         key = item.get("ctx", {}).get("key") or ".".join(path)
         facts.setdefault(key, _fact(item["type"], path, item))  # a list's items count as one
-    if facts.keys() & overrides.keys():
+    if overrides:
         source = f"{source} as overridden"
     lines = [f"{key} {fact}" for key, fact in facts.items()]
     return UsageError(
