@@ -1,6 +1,6 @@
 """How a long run tells what it is doing: one stage at a time, on stderr, or not at all.
 
-The pipeline opens ``progress.stage(name)`` around each of its stages, by the names in ``STAGES``.
+Whoever runs a stage opens ``progress.stage(name)`` around it, by the names in ``STAGES``.
 Nothing here measures: seconds are the pipeline's own, so that silence costs nothing.
 """
 
@@ -21,6 +21,7 @@ STAGES: Mapping[str, str] = MappingProxyType(
         "solve": "Finding the lightest filling that stands",
         "cavity": "Cutting the cavity",
         "check": "Checking walls, stand and surface",
+        "write": "Writing the file",
     }
 )
 

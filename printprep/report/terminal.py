@@ -23,8 +23,10 @@ _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 _TOLD = frozenset({"sealed-cavity"})
 
 
-def show_result(console: Console, result: HollowResult, *, output: str, verbose: bool) -> None:
-    """The summary of ``hollow``: what changed, what was found, where the file is."""
+def show_result(
+    console: Console, result: HollowResult, *, output: str | None, verbose: bool
+) -> None:
+    """The summary of ``hollow``: what changed, what was found, and where the file is, if it is."""
     facts = _facts_table()
     ratio = 100 * result.mass_g / result.solid_mass_g
     facts.add_row(
@@ -59,13 +61,21 @@ def show_result(console: Console, result: HollowResult, *, output: str, verbose:
     console.print(facts)
     show_findings(console, result.findings)
     console.print()
+    if output is None:
+        console.print("Nothing written: a finding is as severe as --fail-on names.")
+        return
     console.print(Text.assemble("Written: ", (output, "bold")), soft_wrap=True)
     for sentence in _advice(result, output):
         console.print(Text(sentence))
 
 
 def show_check(
-    console: Console, subject: Subject, findings: Sequence[Finding], profile: Profile
+    console: Console,
+    subject: Subject,
+    findings: Sequence[Finding],
+    profile: Profile,
+    *,
+    verbose: bool,
 ) -> None:
     """The summary of ``check``."""
     facts = _facts_table()
@@ -79,10 +89,33 @@ def show_check(
             "thinnest wall", f"{subject.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
         )
     facts.add_row("cavities", _cavities(subject.cavities))
+    if verbose:
+        facts.add_row("contact", f"{subject.stability.contact_area_mm2:.4g} mm²")
+        facts.add_row("triangles", f"{subject.part.num_tri()}")
+    _add_repair(facts, subject.repair)
     console.print(facts)
     show_findings(console, findings)
     if not findings:
         console.print("\nNothing to complain of.")
+
+
+def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:
+    """One line a profile, the default first."""
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    for head in ("name", "process", "material", "wall", "layer", "bed, mm"):
+        table.add_column(head, no_wrap=True)
+    for item in profiles:
+        bed = " × ".join(f"{side:g}" for side in item.printer.bed_mm)
+        table.add_row(
+            item.name,
+            item.process,
+            item.material.name,
+            f"{item.wall_mm:g}",
+            f"{item.printer.layer_height_mm:g}",
+            bed,
+        )
+    console.print(table)
+    console.print("\nprintprep profiles show NAME tells where each figure comes from.")
 
 
 def show_findings(console: Console, findings: Sequence[Finding]) -> None:

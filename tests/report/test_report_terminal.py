@@ -109,6 +109,12 @@ def test_check_summary(part, words):
     profile = load_profile("fdm-pla-0.4")
     examined = subject(part(20, 2))
     stream = io.StringIO()
-    show_check(Console(file=stream, width=80), examined, run_rules(examined, profile), profile)
+    show_check(
+        Console(file=stream, width=80),
+        examined,
+        run_rules(examined, profile),
+        profile,
+        verbose=False,
+    )
     for word in words:
         assert word in flat(stream.getvalue())

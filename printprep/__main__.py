@@ -1,0 +1,5 @@
+"""``python -m printprep`` is ``printprep``."""
+
+from printprep.cli import main
+
+main()

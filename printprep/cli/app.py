@@ -1,0 +1,80 @@
+"""The ``printprep`` command: its subcommands by name, loaded when they are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import click
+
+from printprep import __version__
+
+CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 80}
+
+_COMMANDS = {
+    "hollow": "printprep.cli.hollow",
+    "check": "printprep.cli.check",
+    "profiles": "printprep.cli.profiles",
+}
+
+_EPILOG = """\b
+Exit codes:
+  0    done (there may be findings)
+  1    a finding at or above --fail-on
+  2    usage: an option, profile or argument that cannot be meant
+  3    input: the file cannot be read, or is refused
+  4    geometry: the model cannot be made a solid
+  5    output: the file cannot be written there
+  6    tool: a slicer is missing or failed
+  70   a defect of printprep
+  130  interrupted
+
+\b
+Examples:
+  printprep hollow model.stl -o out.3mf
+  printprep check out.3mf --json
+  printprep profiles show fdm-pla-0.4
+"""
+
+
+class LazyGroup(click.Group):
+    """A group whose commands live in modules that are imported when needed.
+
+    lazy : command name → module, which holds the command as ``command``, in the order of --help.
+    """
+
+    def __init__(self, *args: Any, lazy: Mapping[str, str], **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._lazy = dict(lazy)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return [*self._lazy, *super().list_commands(ctx)]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        module = self._lazy.get(cmd_name)
+        if module is None:
+            return super().get_command(ctx, cmd_name)
+        command: click.Command = import_module(module).command
+        return command
+
+
+@click.group(
+    cls=LazyGroup,
+    lazy=_COMMANDS,
+    invoke_without_command=True,
+    context_settings=CONTEXT,
+    epilog=_EPILOG,
+)
+@click.version_option(
+    __version__, "--version", prog_name="printprep", message="%(prog)s %(version)s"
+)
+@click.pass_context
+def printprep(ctx: click.Context) -> None:
+    """Hollow a model for 3D printing.
+
+    The lightest part that stands at the lean you name, that your printer can print, in a file your
+    slicer prints as meant.
+    """
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())

@@ -1,0 +1,71 @@
+"""``printprep check``: the same rules on any file, whoever made it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from printprep.cli.options import (
+    model_argument,
+    output_form_options,
+    overrides,
+    placement_options,
+    profile_options,
+)
+
+_EPILOG = """\b
+Examples:
+  printprep check out.3mf
+  printprep check part.stl -p sls-pa12 --fail-on warning
+  printprep check scan.obj --up y --size 120 --json
+"""
+
+
+@click.command("check", short_help="Check a file against a profile.", epilog=_EPILOG)
+@model_argument
+@profile_options
+@placement_options
+@output_form_options("error")
+def command(
+    model: Path,
+    profile: str,
+    settings: tuple[str, ...],
+    wall_mm: float | None,
+    fail_on: Any,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **options: Any,
+) -> int:
+    """Check MODEL (STL, OBJ, PLY, 3MF or GLB) against a profile; nothing is written.
+
+    Watertight and oriented, walls around cavities, what is sealed inside, tilt angle against
+    --lean, contact with the bed, and whether the printer can hold it.
+    """
+    from printprep.check.registry import at_or_above
+    from printprep.cli.console import stdout_console, trouble_to_stderr
+    from printprep.examine import examine
+    from printprep.progress import for_terminal
+
+    found = examine(
+        model,
+        profile=profile,
+        overrides=overrides(settings, wall_mm),
+        progress=for_terminal(quiet=quiet),
+        **options,
+    )
+    if as_json:
+        from printprep.report.json import check_json, to_text
+
+        click.echo(
+            to_text(check_json(found.subject, found.findings, found.profile, model=str(model)))
+        )
+    elif quiet:
+        trouble_to_stderr(found.findings)
+    else:
+        from printprep.report.terminal import show_check
+
+        show_check(stdout_console(), found.subject, found.findings, found.profile, verbose=verbose)
+    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0

@@ -1,0 +1,149 @@
+"""``printprep hollow``: the main job."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from printprep.cli.options import (
+    model_argument,
+    output_form_options,
+    overrides,
+    placement_options,
+    profile_options,
+)
+from printprep.errors import UsageError
+
+if TYPE_CHECKING:
+    from printprep.types import HollowResult
+
+_EPILOG = """\b
+Examples:
+  printprep hollow model.stl -o out.3mf
+  printprep hollow scan.obj --up y --size 120 --lean 15
+  printprep hollow figure.stl -p resin-standard --wall 2.5
+  printprep hollow vase.stl --set printer.layer_height_mm=0.3 --json
+"""
+
+
+@click.command("hollow", short_help="Hollow a model and write the part.", epilog=_EPILOG)
+@model_argument
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Where to write: .3mf (carries the print settings), .stl, .obj or .ply; an existing file "
+    "is replaced. Default: MODEL-hollow.3mf in the current folder.",
+)
+@profile_options
+@placement_options
+@click.option(
+    "--resolution",
+    type=int,
+    default=64,
+    show_default=True,
+    metavar="N",
+    help="Voxels along the longest side, for the optimization; walls are exact at any.",
+)
+@click.option(
+    "--objective",
+    type=click.Choice(("lean", "paper")),
+    default="lean",
+    show_default=True,
+    help="lean: the lightest part that stands at the lean. paper: DensiCrafter's weighted sum.",
+)
+@click.option(
+    "--base",
+    type=click.Choice(("auto", "never", "always")),
+    default="auto",
+    show_default=True,
+    help="Whether feet may be seated and their footprint grown; auto: where it saves material.",
+)
+@output_form_options("none")
+def command(
+    model: Path,
+    output: Path | None,
+    profile: str,
+    settings: tuple[str, ...],
+    wall_mm: float | None,
+    fail_on: str,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **options: Any,
+) -> int:
+    """Hollow MODEL (STL, OBJ, PLY, 3MF or GLB) and write the part.
+
+    The part is the lightest that still stands when leaned by --lean, with no wall thinner than the
+    profile's. Its outside is the model's, but for a base under its feet where that saves material.
+    With --fail-on, nothing is written when a finding is as severe.
+    """
+    from printprep.pipeline import hollow
+    from printprep.progress import for_terminal
+    from printprep.report.export import check_output, format_findings, write_part
+
+    target = Path(f"{model.stem}-hollow.3mf") if output is None else output
+    check_output(target)
+    _refuse_to_replace(model, target)
+    progress = for_terminal(quiet=quiet)
+    result = hollow(
+        model,
+        profile=profile,
+        overrides=overrides(settings, wall_mm),
+        progress=progress,
+        **options,
+    )
+    result = _with_findings(result, format_findings(result.profile, target))
+    stopped = _stopped(result, fail_on)
+    if not stopped:
+        with progress.stage("write"):
+            write_part(result, target)
+    _say(result, model, None if stopped else target, as_json=as_json, quiet=quiet, verbose=verbose)
+    return 1 if stopped else 0
+
+
+def _refuse_to_replace(model: Path, target: Path) -> None:
+    if target.exists() and model.exists() and target.samefile(model):
+        raise UsageError(
+            f"{target} is the model itself and would be replaced.", "Name another --output."
+        )
+
+
+def _with_findings(result: HollowResult, more: tuple[Any, ...]) -> HollowResult:
+    from printprep.check.registry import sorted_findings
+
+    return replace(result, findings=sorted_findings([*result.findings, *more]))
+
+
+def _stopped(result: HollowResult, fail_on: Any) -> bool:
+    from printprep.check.registry import at_or_above
+
+    return fail_on != "none" and bool(at_or_above(result.findings, fail_on))
+
+
+def _say(
+    result: HollowResult,
+    model: Path,
+    written: Path | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> None:
+    from printprep.cli.console import stdout_console, trouble_to_stderr
+
+    output = None if written is None else str(written)
+    if as_json:
+        from printprep.report.json import result_json, to_text
+
+        click.echo(to_text(result_json(result, model=str(model), output=output)))
+    elif quiet:
+        trouble_to_stderr(result.findings)
+    else:
+        from printprep.report.terminal import show_result
+
+        show_result(stdout_console(), result, output=output, verbose=verbose)

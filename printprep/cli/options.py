@@ -1,0 +1,136 @@
+"""Options that several commands share, so that they read and mean the same everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from printprep.errors import UsageError
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+UNITS = ("mm", "cm", "m", "in")
+DEFAULT_PROFILE = "fdm-pla-0.4"
+
+
+def _together(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    def decorate(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def model_argument(command: Command) -> Command:
+    """The file to work on; that it is there is the reader's to say (exit code 3)."""
+    return click.argument("model", type=click.Path(path_type=Path), metavar="MODEL")(command)
+
+
+def placement_options(command: Command) -> Command:
+    """Unit, axis and size of the model."""
+    return _together(
+        click.option(
+            "--units",
+            type=click.Choice(UNITS),
+            help="Unit of the file's numbers. Default: what the file says, else mm.",
+        ),
+        click.option(
+            "--up",
+            default="+z",
+            show_default=True,
+            metavar="AXIS",
+            help="Axis of the file that points up: x, y or z, with an optional sign.",
+        ),
+        click.option("--scale", type=float, metavar="FACTOR", help="Scale by this factor."),
+        click.option(
+            "--height", "height_mm", type=float, metavar="MM", help="Scale to this height."
+        ),
+        click.option(
+            "--size", "size_mm", type=float, metavar="MM", help="Scale to this longest side."
+        ),
+    )(command)
+
+
+def profile_options(command: Command) -> Command:
+    """Printer, material and limits, and single keys of them."""
+    return _together(
+        click.option(
+            "-p",
+            "--profile",
+            default=DEFAULT_PROFILE,
+            show_default=True,
+            metavar="NAME|FILE",
+            help="Printer, material and limits: a name that `printprep profiles` lists, or a "
+            "TOML file.",
+        ),
+        click.option(
+            "--set",
+            "settings",
+            multiple=True,
+            metavar="KEY=VALUE",
+            help="Change a key of the profile, as printer.layer_height_mm=0.3. Repeatable.",
+        ),
+        click.option(
+            "--wall", "wall_mm", type=float, metavar="MM", help="Thinnest wall (key wall_mm)."
+        ),
+        click.option(
+            "--lean",
+            "lean_deg",
+            type=float,
+            metavar="DEG",
+            help="Lean at which the part must still stand. Default: the profile's.",
+        ),
+    )(command)
+
+
+def output_form_options(default_fail_on: str) -> Callable[[Command], Command]:
+    """How to say what was found, and what counts as failing."""
+    return _together(
+        click.option(
+            "--fail-on",
+            type=click.Choice(("none", "info", "warning", "error")),
+            default=default_fail_on,
+            show_default=True,
+            help="Exit with 1 when a finding is at least as severe.",
+        ),
+        json_option,
+        click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr."),
+        click.option(
+            "-v", "--verbose", is_flag=True, help="More figures; the traceback of a defect."
+        ),
+    )
+
+
+def json_option(command: Command) -> Command:
+    """One JSON object and nothing else on stdout."""
+    return click.option(
+        "--json", "as_json", is_flag=True, help="Print one JSON object, errors too."
+    )(command)
+
+
+def overrides(settings: Sequence[str], wall_mm: float | None) -> Mapping[str, object]:
+    """The profile keys that --set and --wall change.
+
+    Raises UsageError for a --set without a key, and for a key given twice.
+    """
+    pairs: list[tuple[str, object]] = []
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not (key.strip() and equals):
+            raise UsageError(
+                f"--set {setting}: there is no KEY=VALUE in it.",
+                "For example --set printer.layer_height_mm=0.3.",
+            )
+        pairs.append((key.strip(), value.strip()))
+    if wall_mm is not None:
+        pairs.append(("wall_mm", wall_mm))
+    changed = dict(pairs)
+    if len(changed) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise UsageError(f"{twice} is set twice.", "Give it once, by --set or its own option.")
+    return changed

@@ -1,0 +1,94 @@
+"""``printprep profiles``: what there is, what is in one, and one as a slicer's settings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from printprep.cli.options import json_option
+from printprep.errors import UsageError
+
+
+@click.group("profiles", short_help="List, show or export profiles.", invoke_without_command=True)
+@json_option
+@click.pass_context
+def command(ctx: click.Context, as_json: bool) -> None:
+    """List the profiles (the same as `profiles list`), show one, or export one.
+
+    A profile holds a printer, a material and their limits. A path to a TOML file works wherever a
+    name does.
+    """
+    if ctx.invoked_subcommand is None:
+        _list(as_json)
+    elif as_json:
+        name = ctx.invoked_subcommand
+        raise UsageError(f"--json belongs behind {name}: printprep profiles {name} --json.")
+
+
+@command.command("list")
+@json_option
+def list_command(as_json: bool) -> None:
+    """List the profiles that come with printprep, the default first."""
+    _list(as_json)
+
+
+@command.command("show")
+@click.argument("name")
+@json_option
+def show_command(name: str, as_json: bool) -> None:
+    """Show profile NAME as TOML, with the source of every figure.
+
+    Its keys are those that --set takes, with the table's name before a dot.
+    """
+    from printprep.profiles import load_profile, profile_source
+
+    profile = load_profile(name)
+    if as_json:
+        from printprep.report.json import to_text
+
+        click.echo(to_text(profile.model_dump(mode="json")))
+    else:
+        click.echo(profile_source(name), nl=False)
+
+
+@command.command("export")
+@click.argument("name")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="The .ini to write; an existing one is replaced. Default: stdout.",
+)
+def export_command(name: str, output: Path | None) -> None:
+    """Export profile NAME as an .ini for PrusaSlicer (File > Import > Import Config).
+
+    It holds what a 3MF cannot: first layer, nozzle, line widths, filament.
+    """
+    from printprep.profiles import load_profile
+    from printprep.slicer.export import profile_ini
+
+    text = profile_ini(load_profile(name))
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    from printprep.files import write_atomically
+
+    write_atomically(output, text.encode())
+    click.echo(f"Written: {output}")
+
+
+def _list(as_json: bool) -> None:
+    from printprep.profiles import load_profile, profile_names
+
+    profiles = [load_profile(name) for name in profile_names()]
+    if as_json:
+        from printprep.report.json import to_text
+
+        click.echo(to_text({"profiles": [item.model_dump(mode="json") for item in profiles]}))
+        return
+    from printprep.cli.console import stdout_console
+    from printprep.report.terminal import show_profiles
+
+    show_profiles(stdout_console(), profiles)

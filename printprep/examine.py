@@ -1,0 +1,69 @@
+"""Look at a file as it is: read, make a solid of it, weigh it, stand it up, run the rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from printprep.progress import SILENT, Progress
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+    from printprep.types import Finding
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """A file, what the rules found in it, and the profile they judged by."""
+
+    subject: Subject
+    findings: tuple[Finding, ...]
+    profile: Profile
+
+
+def examine(
+    model: str | Path,
+    *,
+    profile: str | Path | Profile = "fdm-pla-0.4",
+    overrides: Mapping[str, object] | None = None,
+    units: str | None = None,
+    up: str = "+z",
+    scale: float | None = None,
+    height_mm: float | None = None,
+    size_mm: float | None = None,
+    lean_deg: float | None = None,
+    progress: Progress = SILENT,
+) -> Examined:
+    """Run the rules on a file, placed as ``hollow`` would place it but otherwise as it came.
+
+    Parameters are those of :func:`printprep.hollow`.
+
+    Raises
+    ------
+    UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
+    """
+    from printprep.check import run_rules, subject_of_solid
+    from printprep.errors import UsageError
+    from printprep.mesh.place import place
+    from printprep.mesh.read import read_mesh
+    from printprep.mesh.repair import repair
+    from printprep.profiles import load_profile
+    from printprep.stand.stability import stability
+
+    settings = load_profile(profile, overrides or {})
+    lean = settings.stability.lean_deg if lean_deg is None else lean_deg
+    if not 0 <= lean <= 60:
+        raise UsageError(f"A lean of {lean:g}° is not between 0° and 60°.")
+    with progress.stage("read"):
+        raw = read_mesh(Path(model), units)
+        placed = place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
+    with progress.stage("repair"):
+        solid = repair(placed)
+    with progress.stage("check"):
+        standing = stability(solid.manifold, settings.printer.first_layer_mm)
+        subject = subject_of_solid(solid.manifold, standing, lean, solid.repair)
+        findings = run_rules(subject, settings)
+    return Examined(subject, findings, settings)
