@@ -23,3 +23,25 @@ def voxelize(path: Path, up: str, resolution: int) -> np.ndarray:
     faces = np.asarray(mesh.faces, dtype=np.int64)
     winding = igl.fast_winding_number(vertices, faces, np.ascontiguousarray(points))
     return (winding > 0.5).reshape((resolution,) * 3)
+
+
+def box() -> np.ndarray:
+    """(16, 16, 16) bool: a cube of 10 voxels from index 3 to 12 on each axis."""
+    occupied = np.zeros((16, 16, 16), dtype=bool)
+    occupied[3:13, 3:13, 3:13] = True
+    return occupied
+
+
+def random_solid(seed: int, edge: int = 12) -> np.ndarray:
+    """(edge, edge, edge) bool: a few overlapping boxes and balls, with at least one voxel."""
+    rng = np.random.default_rng(seed)
+    index = np.stack(np.meshgrid(*[np.arange(edge)] * 3, indexing="ij"), axis=-1)
+    occupied = np.zeros((edge,) * 3, dtype=bool)
+    for _ in range(rng.integers(1, 4)):
+        centre = rng.uniform(edge * 0.25, edge * 0.75, 3)
+        size = rng.uniform(edge * 0.15, edge * 0.4, 3)
+        offset = np.abs(index - centre) / size
+        ball = rng.random() < 0.5
+        occupied |= (offset**2).sum(axis=-1) <= 1 if ball else (offset <= 1).all(axis=-1)
+    occupied[edge // 2, edge // 2, edge // 2] = True
+    return occupied
