@@ -18,9 +18,11 @@ from printprep.types import Base
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
-# A column exactly as wide as the foot above it would only touch it: coincident walls, which a
+# A column exactly as wide as the gap under a foot would only touch it: coincident walls, which a
 # slicer's welding turns into non-manifold edges.  This much more makes the union a true overlap.
 OVERLAP_MM = 0.02
+# A section through a flat bottom face is ill-defined; just above it is not.
+JUST_ABOVE_MM = 1e-4
 # Detail below this in a footprint's outline is below what a nozzle or a laser can follow.
 OUTLINE_MM = 0.01
 # Columns that add less than this are no base at all.
@@ -44,26 +46,28 @@ class Feet:
 
 
 def feet_of(solid: Manifold, seat_mm: float, first_layer_mm: float, layer_mm: float) -> Feet:
-    """Find the feet of a solid and carry them down.
+    """Find the feet of a solid and carry them down, in steps of the layers it will print in.
 
-    Layer i is filled wherever the solid has material between the layer's top and the seat, so
-    that a foot which narrows upward gains nothing, and a rounded one stands on its full width.
+    In each layer the gap is what lies in the shadow of material above it, within the seat, but
+    outside the section at the layer's bottom; it is filled from the bed to the layer's top.
     """
-    from manifold3d import CrossSection, Manifold, OpType
+    from manifold3d import Manifold, OpType
 
     slab = solid.trim_by_plane((0, 0, -1), -seat_mm)
-    tops = np.append(np.arange(first_layer_mm, seat_mm - layer_mm / 2, layer_mm), seat_mm)
+    bottoms = np.append(0.0, np.arange(first_layer_mm, seat_mm - layer_mm / 2, layer_mm))
+    tops = np.append(bottoms[1:], seat_mm)
     columns = []
-    footprint = CrossSection()
-    for top in tops[::-1]:
-        above = slab.trim_by_plane((0, 0, 1), float(top)) if top < seat_mm else None
-        outline = solid.slice(float(top)) if above is None else _shadow(above)
-        footprint = (footprint + outline).simplify(OUTLINE_MM)
-        if not footprint.is_empty():
-            columns.append(_offset(footprint, OVERLAP_MM).extrude(float(top)))
+    for bottom, top in zip(bottoms, tops, strict=True):
+        above = slab.trim_by_plane((0, 0, 1), float(bottom))
+        gap = _shadow(above) - slab.slice(float(bottom) + JUST_ABOVE_MM)
+        # Opened: slivers thinner than the overlap are where outline and section all but agree.
+        gap = _offset(_offset(gap, -OVERLAP_MM), 2 * OVERLAP_MM)
+        if not gap.is_empty():
+            columns.append(gap.extrude(min(float(top) + OVERLAP_MM, seat_mm)))
     voids = Manifold.batch_boolean(list(shells(solid)[1]), OpType.Add)
-    joined = Manifold.batch_boolean(columns, OpType.Add) - voids
-    return Feet(slab, joined, footprint, voids, seat_mm)
+    # The outlines of neighbouring layers nearly coincide: merge what only rounding tells apart.
+    joined = (Manifold.batch_boolean(columns, OpType.Add) - voids).simplify(OUTLINE_MM)
+    return Feet(slab, joined, _shadow(slab).simplify(OUTLINE_MM), voids, seat_mm)
 
 
 def base_of(feet: Feet, growth_mm: float) -> Base | None:
@@ -71,7 +75,7 @@ def base_of(feet: Feet, growth_mm: float) -> Base | None:
     plinth = feet.columns
     if growth_mm > 0:
         grown = _offset(feet.footprint, growth_mm)
-        plinth = plinth + (grown.extrude(feet.seat_mm) - feet.voids)
+        plinth = (plinth + (grown.extrude(feet.seat_mm) - feet.voids)).simplify(OUTLINE_MM)
     if plinth.is_empty() or (plinth - feet.slab).volume() < LEAST_BASE_MM3:
         return None
     return Base(plinth, feet.seat_mm, growth_mm)
@@ -80,7 +84,8 @@ def base_of(feet: Feet, growth_mm: float) -> Base | None:
 def _offset(outline: CrossSection, distance_mm: float) -> CrossSection:
     from manifold3d import JoinType
 
-    return outline.offset(distance_mm, JoinType.Round, 2.0, ARC_SEGMENTS)
+    grown = outline.offset(distance_mm, JoinType.Round, 2.0, ARC_SEGMENTS)
+    return grown.simplify(OUTLINE_MM)
 
 
 def _shadow(manifold: Manifold) -> CrossSection:
