@@ -67,13 +67,7 @@ def profile_options(command: Command) -> Command:
             help="Printer, material and limits: a name that `printprep profiles` lists, or a "
             "TOML file.",
         ),
-        click.option(
-            "--set",
-            "settings",
-            multiple=True,
-            metavar="KEY=VALUE",
-            help="Change a key of the profile, as printer.layer_height_mm=0.3. Repeatable.",
-        ),
+        set_option,
         click.option(
             "--wall", "wall_mm", type=float, metavar="MM", help="Thinnest wall (key wall_mm)."
         ),
@@ -112,7 +106,18 @@ def json_option(command: Command) -> Command:
     )(command)
 
 
-def overrides(settings: Sequence[str], wall_mm: float | None) -> Mapping[str, object]:
+def set_option(command: Command) -> Command:
+    """Any key of the profile."""
+    return click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="KEY=VALUE",
+        help="Change a key of the profile, as printer.layer_height_mm=0.3. Repeatable.",
+    )(command)
+
+
+def overrides(settings: Sequence[str], wall_mm: float | None = None) -> Mapping[str, object]:
     """The profile keys that --set and --wall change.
 
     Raises UsageError for a --set without a key, and for a key given twice.

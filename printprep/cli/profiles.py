@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from printprep.cli.options import json_option
+from printprep.cli.options import json_option, overrides, set_option
 from printprep.errors import UsageError
 
 
@@ -61,7 +61,8 @@ def show_command(name: str, as_json: bool) -> None:
     metavar="FILE",
     help="The .ini to write; an existing one is replaced. Default: stdout.",
 )
-def export_command(name: str, output: Path | None) -> None:
+@set_option
+def export_command(name: str, output: Path | None, settings: tuple[str, ...]) -> None:
     """Export profile NAME as an .ini for PrusaSlicer (File > Import > Import Config).
 
     It holds what a 3MF cannot: first layer, nozzle, line widths, filament.
@@ -69,7 +70,7 @@ def export_command(name: str, output: Path | None) -> None:
     from printprep.profiles import load_profile
     from printprep.slicer.export import profile_ini
 
-    text = profile_ini(load_profile(name))
+    text = profile_ini(load_profile(name, overrides(settings)))
     if output is None:
         click.echo(text, nl=False)
         return

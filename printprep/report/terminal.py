@@ -47,9 +47,9 @@ def show_result(
     certificate = result.density.certificate
     if certificate is not None:
         facts.add_row(
-            "lightest",
-            f"proved on the voxels to {max(certificate.gap, 0.0):.1g} of "
-            f"{certificate.voxel_mass_g:.4g} g",
+            "proof",
+            f"no filling of its voxels below {certificate.bound_g:.4g} g stands so "
+            f"(gap {max(certificate.gap, 0.0):.1g})",
         )
     if verbose and result.density.aim_deg is not None:
         facts.add_row("solved for", f"{result.density.aim_deg:.2f}°, margin included")
@@ -180,7 +180,7 @@ def _advice(result: HollowResult, output: str) -> list[str]:
     advice = [
         f"Print it with a first layer of {printer.first_layer_mm:g} mm, a {printer.nozzle_mm:g} mm "
         f"nozzle and {profile.material.name}: a model file cannot carry these "
-        f"(`printprep profiles export` writes them for PrusaSlicer)."
+        f"(`printprep profiles export {profile.name}` writes them for PrusaSlicer)."
     ]
     plate_only = "support_material_buildplate_only" in profile.slicer.object_settings
     if plate_only and result.part.cavities and output.lower().endswith(".3mf"):
