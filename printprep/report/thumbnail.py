@@ -100,17 +100,18 @@ def _light(normal: Float, eye: Float) -> Float:
 
 def _normals(vertices: Float, faces: Int) -> tuple[Float, Float]:
     """Unit normals of faces (m, 3), and of their corners (m, 3, 3), smooth but creased."""
-    a, b, c = (vertices[faces[:, index]] for index in range(3))
-    weighted: Float = np.cross(b - a, c - a)
-    flat = _unit(weighted)
-    summed: Float = np.column_stack(
-        [
-            np.bincount(
-                faces.ravel(), weights=np.repeat(weighted[:, axis], 3), minlength=len(vertices)
-            )
-            for axis in range(3)
-        ]
-    ).astype(np.float64)
+    corners = vertices[faces]
+    flat = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    # weighted by the angle at the corner, so that how a side is cut into triangles does not matter
+    after = _unit((np.roll(corners, -1, axis=1) - corners).reshape(-1, 3))
+    before = _unit((np.roll(corners, 1, axis=1) - corners).reshape(-1, 3))
+    angle = np.arccos(np.clip((after * before).sum(axis=1), -1.0, 1.0))
+    weighted = np.repeat(flat, 3, axis=0) * angle[:, None]
+    summed = np.zeros((len(vertices), 3))
+    for axis in range(3):
+        summed[:, axis] = np.bincount(
+            faces.ravel(), weights=weighted[:, axis], minlength=len(vertices)
+        )
     smooth = _unit(summed)[faces]
     agrees = (smooth * flat[:, None]).sum(axis=2, keepdims=True) > _CREASE_COS
     return flat, np.where(agrees, smooth, flat[:, None])
