@@ -46,8 +46,8 @@ def mend(meshes: Any, recipe: str, crack: Any) -> None:
     """Drop what no solid can have, turn faces alike, close holes; "cracks" joins their sides."""
     if recipe == "cracks":
         meshes.meshing_merge_close_vertices(threshold=crack)
+    # Faces without area stay: they hold the surface together where edges meet in a T.
     meshes.meshing_remove_duplicate_faces()
-    meshes.meshing_remove_null_faces()
     _two_manifold(meshes)
     meshes.meshing_re_orient_faces_coherently()
     meshes.meshing_close_holes(

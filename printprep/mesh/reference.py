@@ -1,12 +1,14 @@
 """What space a mesh encloses, however broken it is: the yardstick each rung of repair is held to.
 
-The generalized winding number w is sampled once per cell of a jittered grid.  {w > ½} is the
-solid meant.  Where ¼ < w < ¾ the surface is open and how to close it is a matter of choice;
-elsewhere the mesh has decided, and a repair must agree with it.
+The generalized winding number w is sampled at jittered points: vertical lines, one per cell of a
+grid over x and y, and on each line one point in every of m equal heights.  {w > ½} is the solid
+meant.  Where ¼ < w < ¾ the surface is open and how to close it is a matter of choice; elsewhere
+the mesh has decided, and a repair must agree with it.
 
-Error of the sampled volume: only cells the surface crosses count, each with a standard deviation
-of at most half a cell.  A surface of area A crosses about 3A/2h² cells of edge h (the mean of
-|n_x| + |n_y| + |n_z| over directions is 3/2), so σ ≤ ½ h³ √(3A/2h²).
+Error of the sampled volume, for cells of a × a × b and m b = H: only cells the surface crosses
+count, each with a variance of at most a quarter of its square.  A horizontal area A_z crosses
+A_z/a² cells; a vertical one, A_x + A_y by its projections, (A_x + A_y)/(a b), m of which share
+their line.  So σ² ≤ ¼ (a²b)² (A_z/a² + m (A_x + A_y)/(a b)) = ¼ a²b² (A_z + m a (A_x + A_y)/b).
 """
 
 from __future__ import annotations
@@ -16,7 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays, winding
+from printprep.mesh.columns import winding_in_columns
+from printprep.mesh.measure import arrays
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -25,7 +28,8 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]
 
-_SAMPLES = 48**3
+_COLUMNS = 120**2
+_HEIGHTS = 8
 _SEED = 20130721
 _UNDECIDED = (0.25, 0.75)
 # Material two descriptions of one solid may differ by.  Half a percent is a tenth of what the
@@ -36,11 +40,12 @@ _SIGMAS = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """points : (n, 3) mm;  winding : (n,);  cell_mm3 : volume each point stands for;
-    volume_mm3 : of {w > ½};  undecided_mm3 : of {¼ < w < ¾};  sigma_mm3 : bound on the standard
-    deviation of ``volume_mm3``."""
+    """columns : (c, 2) mm;  z_mm : (c, m) heights on each;  winding : (c, m);  cell_mm3 : volume
+    each point stands for;  volume_mm3 : of {w > ½};  undecided_mm3 : of {¼ < w < ¾};  sigma_mm3 :
+    bound on the standard deviation of ``volume_mm3``."""
 
-    points: Float
+    columns: Float
+    z_mm: Float
     winding: Float
     cell_mm3: float
     volume_mm3: float
@@ -50,19 +55,23 @@ class Reference:
     @staticmethod
     def of(vertices: Float, faces: Int) -> Reference:
         """Sample a mesh: vertices (n, 3) mm, faces (m, 3)."""
-        points, cell = _jittered(vertices)
-        w = winding(points, vertices, faces)
+        low, extents = vertices.min(axis=0), np.ptp(vertices, axis=0)
+        columns, z = _jittered(low, extents)
+        cell = float(np.prod(extents)) / z.size
+        w = _winding(vertices, faces, columns, z)
         corners = vertices[faces]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        area = float(np.linalg.norm(normals, axis=1).sum()) / 2
-        low, high = _UNDECIDED
+        area_x, area_y, area_z = np.abs(normals).sum(axis=0) / 2
+        a2, b = float(np.prod(extents[:2])) / len(columns), float(extents[2]) / _HEIGHTS
+        upright = _HEIGHTS * np.sqrt(a2) / b * (area_x + area_y)
         return Reference(
-            points=points,
+            columns=columns,
+            z_mm=z,
             winding=w,
             cell_mm3=cell,
             volume_mm3=float((w > 0.5).sum()) * cell,
-            undecided_mm3=float(((w > low) & (w < high)).sum()) * cell,
-            sigma_mm3=0.5 * cell ** (2 / 3) * float(np.sqrt(1.5 * area)),
+            undecided_mm3=float(((w > _UNDECIDED[0]) & (w < _UNDECIDED[1])).sum()) * cell,
+            sigma_mm3=0.5 * b * float(np.sqrt(a2 * (area_z + upright))),
         )
 
     def disagreement(self, manifold: Manifold, slack_mm3: float = 0.0) -> str | None:
@@ -70,7 +79,7 @@ class Reference:
 
         slack_mm3 : volume the rung's own method may lose (0 for exact ones).
         """
-        w = winding(self.points, *arrays(manifold))
+        w = _winding(*arrays(manifold), self.columns, self.z_mm)
         limit = _SHARE * self.volume_mm3 + slack_mm3
         decided = (self.winding <= _UNDECIDED[0]) | (self.winding >= _UNDECIDED[1])
         differs = float((decided & ((w > 0.5) != (self.winding > 0.5))).sum()) * self.cell_mm3
@@ -86,16 +95,22 @@ class Reference:
         return None
 
 
-def _jittered(vertices: Float) -> tuple[Float, float]:
-    """One random point per cell of a grid over the bounds: (n, 3), and the volume of a cell.
+def _winding(vertices: Float, faces: Int, columns: Float, z: Float) -> Float:
+    column_of = np.repeat(np.arange(len(columns)), z.shape[1])
+    return winding_in_columns(vertices, faces, columns, column_of, z.ravel()).reshape(z.shape)
 
-    Cells are about cubic, at least four along the shortest side, always from the same seed.
+
+def _jittered(low: Float, extents: Float) -> tuple[Float, Float]:
+    """Lines (c, 2) through about square cells over the bounds, and heights (c, m) on each.
+
+    At least four cells along the shorter side; always from the same seed.
     """
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    extents = np.maximum(high - low, 1e-300)
-    edge = float(np.prod(extents) / _SAMPLES) ** (1 / 3)
-    counts = np.clip(np.rint(extents / edge), 4, 4096).astype(np.int64)
-    index = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), axis=-1)
-    offsets = np.random.default_rng(_SEED).random((int(counts.prod()), 3))
-    points = low + (index.reshape(-1, 3) + offsets) / counts * extents
-    return points, float(np.prod(extents / counts))
+    rng = np.random.default_rng(_SEED)
+    edge = float(np.sqrt(np.prod(extents[:2]) / _COLUMNS))
+    nx, ny = (int(n) for n in np.clip(np.rint(extents[:2] / edge), 4, 4096))
+    index = np.stack(np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij"), axis=-1)
+    cells = index.reshape(-1, 2) + rng.random((nx * ny, 2))
+    heights = np.arange(_HEIGHTS) + rng.random((nx * ny, _HEIGHTS))
+    columns: Float = low[:2] + cells / (nx, ny) * extents[:2]
+    z: Float = low[2] + heights / _HEIGHTS * extents[2]
+    return columns, z

@@ -15,7 +15,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import distance_to_mesh_mm, signed_volumes, together, try_manifold, winding
+from printprep.mesh.measure import (
+    distance_to_mesh_mm,
+    signed_volumes,
+    together,
+    try_manifold,
+    winding,
+)
 from printprep.mesh.shells import Candidate, Refusal
 
 if TYPE_CHECKING:

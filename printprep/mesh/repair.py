@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.mesh.measure import distance_mm, winding
+from printprep.mesh.columns import winding_at
+from printprep.mesh.measure import distance_mm
 from printprep.mesh.meshlab import mended
 from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
@@ -149,7 +150,7 @@ def _moved(vertices: Float, faces: Int, manifold: Manifold) -> Float:
     points = np.einsum("nk,nkj->nj", weights, corners[index])
     step = 1e-4 * float(np.ptp(vertices, axis=0).max())
     outward = step * normals[index] / np.maximum(doubled[index], 1e-300)[:, None]
-    bounds = (winding(points - outward, vertices, faces) > 0.5) & (
-        winding(points + outward, vertices, faces) <= 0.5
+    bounds = (winding_at(points - outward, vertices, faces) > 0.5) & (
+        winding_at(points + outward, vertices, faces) <= 0.5
     )
     return distance_mm(points[bounds] if bounds.any() else points, manifold)

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import manifold3d
 import numpy as np
 
-from printprep.mesh.measure import innermost, shells, try_manifold
+from printprep.mesh.measure import innermost, shells, signed_volumes, try_manifold
+from printprep.mesh.slivers import without_slivers
 from printprep.mesh.weld import components
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ _DUST_OF_BOX = 1e-9
 _DUST_MM3 = 1e-3
 # A piece of surface thinner than this, relative to its size, lies in a plane and encloses nothing.
 _FLAT = 1e-6
+# Share of the volume that merging its shortest edges may cost on the way into the kernel.
+_KEPT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +61,10 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
     Pieces that lie in a plane enclose nothing and are left out; any other open piece is a reason
     to refuse, as closing it is another rung's work.
     """
+    faces = without_slivers(vertices, faces)
     whole, status = try_manifold(vertices, faces)
+    if status == "NoError" and not _kept_whole(whole, vertices, faces):
+        return Refusal("its triangles without area could not be resolved")
     if status == "NoError":
         parts, scraps, rough = whole.decompose(), 0, 0
     else:
@@ -85,6 +91,12 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
     return Candidate(joined, tuple(actions))
 
 
+def _kept_whole(manifold: Manifold, vertices: Float, faces: Int) -> bool:
+    """Whether the kernel, cleaning up, kept the volume of the triangles it was given."""
+    volume = float(signed_volumes((vertices - vertices.mean(axis=0))[faces]).sum())
+    return abs(float(manifold.volume()) - volume) <= _KEPT * abs(volume)
+
+
 def _closed_pieces(vertices: Float, faces: Int) -> tuple[list[Manifold], int, int]:
     """Manifolds of the closed pieces, the number of flat ones, and of other open ones."""
     closed: list[Manifold] = []
@@ -102,7 +114,7 @@ def _closed_pieces(vertices: Float, faces: Int) -> tuple[list[Manifold], int, in
 
 def _is_flat(points: Float) -> bool:
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return len(points) <= 3 or bool(spread[-1] <= _FLAT * spread[0])
+    return len(points) <= 3 or float(spread[-1]) <= _FLAT * float(spread[0])
 
 
 def _without_dust(
@@ -137,4 +149,5 @@ def _join(solids: list[Manifold], voids: list[Manifold]) -> Manifold:
 
 def _same(joined: Manifold, volume: float, triangles: int) -> bool:
     """Whether uniting changed nothing: all shells were apart."""
-    return joined.num_tri() == triangles and abs(joined.volume() - volume) <= 1e-9 * abs(volume)
+    changed = abs(float(joined.volume()) - volume) > 1e-9 * abs(volume)
+    return not changed and int(joined.num_tri()) == triangles
