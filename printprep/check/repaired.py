@@ -28,8 +28,9 @@ def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
     repair = subject.repair
     if repair.rung == "as-is" or (subject.hollowed and repair.moved_max_mm <= _MOVED_LIMIT_MM):
         return
+    moved_mm = round(repair.moved_max_mm, 4)  # below that it is arithmetic, not repair
     done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
-    moved = f"the surface moved by up to {repair.moved_max_mm:.2g} mm"
+    moved = f"the surface moved by up to {moved_mm:.2g} mm" if moved_mm else "nothing moved"
     if subject.hollowed:
         severity: Severity = "warning"
         message = f"The model had to be repaired, and {moved} ({done})."
@@ -43,7 +44,7 @@ def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
         severity,
         message,
         fix,
-        value=repair.moved_max_mm,
+        value=moved_mm,
         limit=_MOVED_LIMIT_MM if subject.hollowed else 0.0,
         unit="mm",
     )

@@ -152,8 +152,8 @@ def _repair(repair: Repair) -> dict[str, Any]:
     return {
         "rung": repair.rung,
         "actions": list(repair.actions),
-        "moved_max_mm": number(repair.moved_max_mm, 3),
-        "moved_mean_mm": number(repair.moved_mean_mm, 3),
+        "moved_max_mm": round(repair.moved_max_mm, 4),
+        "moved_mean_mm": round(repair.moved_mean_mm, 4),
         "resolution_mm": number(repair.resolution_mm),
     }
 

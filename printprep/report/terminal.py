@@ -168,7 +168,9 @@ def _add_repair(facts: Table, repair: Repair) -> None:
     if repair.rung == "as-is":
         return
     done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
-    facts.add_row("repair", f"{done}; surface moved by up to {repair.moved_max_mm:.2g} mm")
+    moved_mm = round(repair.moved_max_mm, 4)
+    moved = f"surface moved by up to {moved_mm:.2g} mm" if moved_mm else "nothing moved"
+    facts.add_row("repair", f"{done}; {moved}")
 
 
 def _advice(result: HollowResult, output: str) -> list[str]:

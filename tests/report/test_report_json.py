@@ -94,7 +94,7 @@ def test_repair_is_told_in_full():
     done = hollow_result()
     solid = Solid(done.solid.manifold, "block", repair, done.solid.placement)
     assert result_json(hollow_result(solid=solid))["repair"] == {
-        "rung": "remesh", "actions": ["remade"], "moved_max_mm": 0.123,
+        "rung": "remesh", "actions": ["remade"], "moved_max_mm": 0.1235,
         "moved_mean_mm": 0.01, "resolution_mm": 0.5,
     }  # fmt: skip
 
