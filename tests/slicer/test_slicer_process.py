@@ -180,6 +180,19 @@ def test_a_block_is_sliced_where_it_lies_without_a_home(
 
 
 @pytest.mark.slicer
+def test_what_the_slicer_warns_of_is_handed_on(slicer: Slicer, block: Path, tmp_path: Path) -> None:
+    """A second block that floats 3 mm over the first."""
+    assert slicer.slice(block, tmp_path / "one.gcode").warnings == ()
+    text = block.read_text()
+    above = re.sub(r"(vertex \d \d) (\d)", lambda m: f"{m[1]} {int(m[2]) + 7}", text)
+    both = tmp_path / "both.stl"
+    both.write_text(text.replace("endsolid block\n", "") + above.removeprefix("solid block\n"))
+    warnings = slicer.slice(both, tmp_path / "two.gcode").warnings
+    assert warnings
+    assert "warning" in warnings[0]
+
+
+@pytest.mark.slicer
 @pytest.mark.parametrize(
     "settings", [{"layer_height": "9"}, {"fill_pattern": "nonsense"}, {"layer_height": "thick"}]
 )

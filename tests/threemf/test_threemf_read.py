@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import io
 import subprocess
 import time
 import zipfile
 from pathlib import Path
 
+import lib3mf
 import numpy as np
 import pytest
 from hypothesis import given
@@ -213,6 +215,31 @@ def test_negative_volumes_are_refused_rather_than_read_as_something_else(tmp_pat
     path = tmp_path / "a.3mf"
     path.write_bytes(write_3mf([Item("i", [cube, hole])]))
     assert "'my hole'" in refused(path)
+
+
+def test_what_lib3mf_writes_is_read(tmp_path: Path) -> None:
+    """Inches, a mesh used twice as a component, the whole moved by the build item."""
+    wrapper = lib3mf.get_wrapper()
+    model = wrapper.CreateModel()
+    model.SetUnit(lib3mf.ModelUnit.Inch)
+    mesh = model.AddMeshObject()
+    points = box((0, 0, 0), (1, 2, 3)).tolist()
+    mesh.SetGeometry(
+        [lib3mf.Position((ctypes.c_float * 3)(*point)) for point in points],
+        [lib3mf.Triangle((ctypes.c_uint32 * 3)(*face)) for face in BOX_FACES.tolist()],
+    )
+    pair = model.AddComponentsObject()
+    pair.SetName("pair")
+    pair.AddComponent(mesh, wrapper.GetIdentityTransform())
+    pair.AddComponent(mesh, wrapper.GetTranslationTransform(10.0, 0.0, 0.0))
+    model.AddBuildItem(pair, wrapper.GetTranslationTransform(0.0, 0.0, 4.0))
+    path = tmp_path / "a.3mf"
+    model.QueryWriter("3mf").WriteToFile(str(path))
+    found = read_3mf(path)
+    assert found.names == ("pair",)
+    assert volume(found.vertices, found.faces) == pytest.approx(2 * 6 * 25.4**3)
+    assert found.vertices.min(axis=0) == pytest.approx([0.0, 0.0, 4 * 25.4])
+    assert found.vertices.max(axis=0) == pytest.approx([11 * 25.4, 2 * 25.4, 7 * 25.4])
 
 
 @pytest.mark.slicer
