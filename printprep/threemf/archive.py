@@ -26,6 +26,7 @@ PART_BYTES_MAX = 1 << 30
 RATIO_MAX = 150
 RATIO_COUNTS_FROM_BYTES = 64 << 20
 PARTS_MAX = 20_000
+SMALL_PART_BYTES_MAX = 8 << 20  # relationships and slicer configs, which are held as a whole
 
 _DAMAGE = (
     zipfile.BadZipFile,
@@ -94,7 +95,7 @@ class Archive:
         except _DAMAGE as error:
             raise InputError(f"{self.name}: the part {part} is damaged ({error})") from error
 
-    def read(self, part: str, limit_bytes: int) -> bytes:
+    def read(self, part: str, limit_bytes: int = SMALL_PART_BYTES_MAX) -> bytes:
         """A whole part; InputError where it is larger than `limit_bytes`."""
         with self.open(part) as stream:
             content = stream.read(limit_bytes + 1)

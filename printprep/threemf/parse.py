@@ -8,6 +8,7 @@ Source: 3MF core specification 1.3; production extension 1.1 (the path attribute
 
 from __future__ import annotations
 
+import io
 import math
 from array import array
 from collections.abc import Iterator
@@ -163,7 +164,7 @@ def parse_model(stream: IO[bytes], label: str) -> ParsedModel:
     return parsed
 
 
-def parse_elements(stream: IO[bytes], label: str) -> list[Element]:
+def parse_elements(content: bytes, label: str) -> list[Element]:
     """Every element of a small part in document order."""
 
     class _Flat:
@@ -181,7 +182,7 @@ def parse_elements(stream: IO[bytes], label: str) -> list[Element]:
         def close(self) -> list[Element]:
             return self.found
 
-    elements: list[Element] = _feed(stream, _Flat(), label)
+    elements: list[Element] = _feed(io.BytesIO(content), _Flat(), label)
     return elements
 
 

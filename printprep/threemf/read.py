@@ -124,6 +124,8 @@ class _Build:
 
     def _add(self, part: str, object_id: str, matrix: Float) -> None:
         points, faces = self._mesh(part, object_id)
+        if not len(faces):
+            return
         with np.errstate(over="ignore", invalid="ignore"):
             moved = points @ matrix[:3, :3] + matrix[3, :3]
         if not np.isfinite(moved).all():
@@ -179,8 +181,7 @@ class _Build:
 def _root_part(archive: Archive) -> str:
     """The model part that the package names; failing that, where it usually lies."""
     if "_rels/.rels" in archive:
-        with archive.open("_rels/.rels") as stream:
-            relations = parse_elements(stream, f"{archive.name}: _rels/.rels")
+        relations = parse_elements(archive.read("_rels/.rels"), f"{archive.name}: _rels/.rels")
         for _, _, attributes in relations:
             target = attributes.get("Target", "")
             if attributes.get("Type", "").endswith("/3dmodel") and target in archive:

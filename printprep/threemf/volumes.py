@@ -69,8 +69,7 @@ def _children(
     """(object id, attributes, metadata by key) of each `child` element of each object."""
     if part not in archive:
         return []
-    with archive.open(part) as stream:
-        elements: list[Element] = parse_elements(stream, f"{archive.name}: {part}")
+    elements: list[Element] = parse_elements(archive.read(part), f"{archive.name}: {part}")
     found: list[tuple[str, dict[str, str], dict[str, str]]] = []
     object_id = ""
     inside: dict[str, str] | None = None

@@ -329,6 +329,25 @@ def test_parts_that_unpack_to_far_more_than_they_hold_are_refused(tmp_path: Path
     assert "unpacks to 80 MiB" in refused(package(tmp_path / "a.3mf", bomb))
 
 
+def test_configs_larger_than_any_are_refused(tmp_path: Path) -> None:
+    config = "<config>" + "<a/>" * (3 << 20) + "</config>"
+    path = package(
+        tmp_path / "a.3mf", model_xml(OBJECT), {"Metadata/Slic3r_PE_model.config": config}
+    )
+    assert "larger than" in refused(path)
+
+
+def test_an_object_of_modifiers_alone_prints_nothing(tmp_path: Path) -> None:
+    config = (
+        '<config><object id="1"><volume firstid="0" lastid="11"><metadata type="volume" '
+        'key="modifier" value="1"/></volume></object></config>'
+    )
+    path = package(
+        tmp_path / "a.3mf", model_xml(OBJECT), {"Metadata/Slic3r_PE_model.config": config}
+    )
+    assert "no triangles" in refused(path)
+
+
 def test_names_never_reach_the_file_system(tmp_path: Path) -> None:
     inside = tmp_path / "inside"
     inside.mkdir()
