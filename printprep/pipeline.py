@@ -53,7 +53,7 @@ def hollow(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.check import Subject, run_rules, wall_min_mm
+    from printprep.check import Subject, run_rules
     from printprep.cavity.surface import cavity_surface
     from printprep.density.solve import Program
     from printprep.mesh.repair import repair
@@ -99,7 +99,6 @@ def hollow(
             reachable_deg=density.reachable_deg,
         )
         findings = run_rules(subject, settings)
-        wall = wall_min_mm(part)
         before = stability(solid.manifold, first_layer)
     grams_per_mm3 = settings.material.density_g_cm3 / 1000
     return HollowResult(
@@ -113,7 +112,7 @@ def hollow(
         lean_deg=lean,
         solid_mass_g=solid.manifold.volume() * grams_per_mm3,
         mass_g=part.manifold.volume() * grams_per_mm3,
-        wall_min_mm=None if wall is None else wall.value_mm,
+        wall_min_mm=None if subject.wall is None else subject.wall.value_mm,
         findings=findings,
         seconds=clock.seconds,
     )

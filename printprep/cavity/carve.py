@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # Where a search for the largest ball starts: as many of the points farthest from the surface.
 STARTS = 8
+# Cells along the longest side of the first lattice searched for a ball.
+COARSE_CELLS = 12
 
 
 def cut(
@@ -58,37 +60,34 @@ def _above(room: Manifold, plane: Plane | None) -> Manifold:
 
 
 def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
-    """Whether a ball of this radius fits inside."""
+    """Whether a ball of this radius fits inside.
+
+    A lattice is searched, coarse first, since most pieces are roomy; the deepest points of the
+    finest, half a radius apart, are climbed from.
+    """
     box = np.array(piece.bounding_box())
-    if np.any(box[3:] - box[:3] < 2 * radius_mm):
+    extents = box[3:] - box[:3]
+    if np.any(extents < 2 * radius_mm):
         return False
     surface = Surface.of(piece)
-    step = radius_mm / 2
-    starts = _inner_points(surface, box, step)
-    for start, depth in starts:
-        if depth >= radius_mm:
+    finest = radius_mm / 2
+    step = max(finest, float(extents.max()) / COARSE_CELLS)
+    while True:
+        points = _lattice(box, step)
+        depth = surface.depth_mm(points)
+        if depth.max() >= radius_mm:
             return True
-        _, deepest = deepest_point(surface.depth_mm, start, step)
+        if step <= finest:
+            break
+        step = max(finest, step / 2)
+    for start in np.argsort(-depth, kind="stable")[:STARTS]:
+        _, deepest = deepest_point(surface.depth_mm, points[start], finest)
         if deepest >= radius_mm:
             return True
     return False
 
 
-def _inner_points(surface: Surface, box: Float, step_mm: float) -> list[tuple[Float, float]]:
-    """Some inner points with their depth, deepest first, from a lattice of the given step.
-
-    A piece that holds a ball of radius 2·step has lattice points well inside it.  Large pieces are
-    searched in chunks, from their middle out, until one is deep enough to settle the matter.
-    """
-    axes = [np.arange(low + step_mm / 2, high, step_mm) for low, high in zip(box[:3], box[3:])]
-    lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    order = np.argsort(np.linalg.norm(lattice - (box[:3] + box[3:]) / 2, axis=1), kind="stable")
-    found: list[tuple[Float, float]] = []
-    for chunk in np.array_split(lattice[order], max(1, len(lattice) // 20000)):
-        depth = surface.depth_mm(chunk)
-        top = np.argsort(-depth, kind="stable")[:STARTS]
-        found += [(chunk[i], float(depth[i])) for i in top if depth[i] > 0]
-        if found and max(d for _, d in found) >= 2 * step_mm:
-            break
-    return sorted(found, key=lambda pair: -pair[1])[:STARTS]
-
+def _lattice(box: Float, step_mm: float) -> Float:
+    """(n, 3) points in a box, a step apart, half a step from its lower corner."""
+    axes = [np.arange(box[axis] + step_mm / 2, box[axis + 3], step_mm) for axis in range(3)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -128,25 +128,26 @@ def close_small_pockets(
     surface: Surface, field: DepthField, wall_mm: float, min_feature_mm: float
 ) -> DepthField | None:
     """The field with every pocket closed that cannot hold a ball of the minimum feature."""
-    from scipy.ndimage import label, maximum_position
+    from scipy.ndimage import find_objects, label
 
     pocket, count = label(field.depth_mm > wall_mm)
-    peaks = maximum_position(field.depth_mm, pocket, np.arange(1, count + 1))
-    small = np.zeros(count + 1, dtype=bool)
-    for number, peak in enumerate(peaks, start=1):
-        start = field.grid.origin_mm + field.grid.pitch_mm * np.array(peak)
-        radius = field.depth_mm[peak] - wall_mm
-        if radius < min_feature_mm / 2:
-            _, depth = deepest_point(surface.distance_mm, start, field.grid.pitch_mm)
-            radius = depth - wall_mm
-        small[number] = radius < min_feature_mm / 2
+    roomy = np.unique(pocket[field.depth_mm >= wall_mm + min_feature_mm / 2])
+    small = np.ones(count + 1, dtype=bool)
+    small[[0, *roomy]] = False
+    boxes = find_objects(pocket)
+    for number in np.flatnonzero(small):
+        box = boxes[number - 1]
+        inside = np.where(pocket[box] == number, field.depth_mm[box], -np.inf)
+        peak = np.unravel_index(int(np.argmax(inside)), inside.shape)
+        index = np.array([axis.start for axis in box]) + peak
+        start = field.grid.origin_mm + field.grid.pitch_mm * index
+        _, depth = deepest_point(surface.distance_mm, start, field.grid.pitch_mm)
+        small[number] = depth - wall_mm < min_feature_mm / 2
     if not small.any():
         return field
     if small[1:].all():
         return None
-    closed = np.where(
-        small[pocket], np.float32(wall_mm - field.grid.pitch_mm / 2), field.depth_mm
-    )
+    closed = np.where(small[pocket], np.float32(wall_mm - field.grid.pitch_mm / 2), field.depth_mm)
     return DepthField(field.grid, closed)
 
 
