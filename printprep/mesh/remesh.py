@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.columns import winding_in_columns
 from printprep.mesh.measure import (
     distance_to_mesh_mm,
     signed_volumes,
     together,
     try_manifold,
-    winding,
 )
 from printprep.mesh.shells import Candidate, Refusal
 
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 CELLS = 200  # along the longest side
 _BLOCK = 4  # cells along an edge of the coarse blocks that decide where to look closely
 _MARGIN = 2 * _BLOCK  # cells around the model
+# The grid is shifted by fractions of a cell that no model's own coordinates have in common with it.
+_ASIDE = np.array((0.3183, 0.3679, 0.4142))
 _LEAST = 1e-3  # |f| is kept above this share of a cell, or triangles degenerate at grid points
 _SIMPLIFY = 0.05  # cells the surface may move when triangles are merged
 _CRUMB_CELLS = 8  # a shell of fewer cells is noise of the winding number around open edges
@@ -44,11 +46,12 @@ def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
 
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     pitch = float((high - low).max()) / CELLS
-    field = _field(vertices, faces, low - _MARGIN * pitch, high - low, pitch)
+    origin = low - (_MARGIN + _ASIDE) * pitch
+    field = _field(vertices, faces, origin, high - low, pitch)
     if not (field > 0).any():
         return Refusal("no cell of the new grid lies inside it")
     corners, triangles, _, _ = marching_cubes(field, 0.0, allow_degenerate=False)
-    points = corners.astype(np.float64) * pitch + (low - _MARGIN * pitch)
+    points = corners.astype(np.float64) * pitch + origin
     triangles = triangles.astype(np.int64)
     if signed_volumes((points - points.mean(axis=0))[triangles]).sum() < 0:
         triangles = triangles[:, ::-1]
@@ -72,29 +75,41 @@ def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
 def _without_crumbs(manifold: Manifold, pitch: float) -> tuple[Manifold, int]:
     parts = manifold.decompose()
     kept = [part for part in parts if abs(part.volume()) >= _CRUMB_CELLS * pitch**3]
-    return together(kept), len(parts) - len(kept)
+    if len(kept) == len(parts):
+        return manifold, 0
+    return (together(kept) if kept else type(manifold)()), len(parts) - len(kept)
 
 
 def _field(vertices: Float, faces: Int, origin: Float, extents: Float, pitch: float) -> Float:
     """f at the nodes of the grid, (nx, ny, nz) in x, y, z; far from the surface only its sign."""
     blocks = np.ceil((extents / pitch + 2 * _MARGIN) / _BLOCK).astype(np.int64)
-    coarse = _nodes(np.ones(blocks + 1, dtype=bool), origin, pitch * _BLOCK)
-    w = winding(coarse, vertices, faces).reshape(blocks + 1)
-    d = distance_to_mesh_mm(coarse, vertices, faces).reshape(blocks + 1)
-    close = _close_blocks(w, d, pitch)
+    everywhere = np.ones(blocks + 1, dtype=bool)
+    coarse = _BLOCK * pitch
+    w = _winding(everywhere, vertices, faces, origin, coarse).reshape(blocks + 1)
+    d = distance_to_mesh_mm(_nodes(everywhere, origin, coarse), vertices, faces)
+    close = _close_blocks(w, d.reshape(blocks + 1), pitch)
     # A node far away has the sign of its block, which is that of any of the block's corners.
     f = np.where(_spread(w[:-1, :-1, :-1] > 0.5), pitch, -pitch).astype(np.float64)
     near = _spread(close)
-    points = _nodes(near, origin, pitch)
-    w_near = winding(points, vertices, faces)
+    w_near = _winding(near, vertices, faces, origin, pitch)
     f[near] = np.where(w_near > 0.5, pitch, -pitch)
+    # Marching cubes reads a value only at the two ends of an edge that is crossed.
     crossed = _crossed(f > 0) & near
-    at = crossed[near]
-    d_near = distance_to_mesh_mm(points[at], vertices, faces)
-    value = d_near * np.clip(4 * (w_near[at] - 0.5), -1, 1)
+    decided = w_near[crossed[near]]
+    distance = distance_to_mesh_mm(_nodes(crossed, origin, pitch), vertices, faces)
+    value = distance * np.clip(4 * (decided - 0.5), -1, 1)
     least = _LEAST * pitch
-    f[crossed] = np.where(w_near[at] > 0.5, np.maximum(value, least), np.minimum(value, -least))
+    f[crossed] = np.where(decided > 0.5, np.maximum(value, least), np.minimum(value, -least))
     return f
+
+
+def _winding(wanted: Bool, vertices: Float, faces: Int, origin: Float, pitch: float) -> Float:
+    """(n,) winding numbers at the nodes wanted, in the order of a flattened grid."""
+    flat = wanted.reshape(-1, wanted.shape[2])
+    used, inverse = np.unique(np.nonzero(flat)[0], return_inverse=True)
+    xy = np.stack(np.unravel_index(used, wanted.shape[:2]), axis=-1)
+    z = origin[2] + pitch * np.nonzero(flat)[1]
+    return winding_in_columns(vertices, faces, origin[:2] + pitch * xy, inverse, z)
 
 
 def _close_blocks(w: Float, d: Float, pitch: float) -> Bool:
