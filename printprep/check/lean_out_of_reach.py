@@ -37,8 +37,8 @@ def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
         "lean-out-of-reach",
         "error",
         message,
-        "A larger base (--base auto, or "
-        f"--set stability.base_growth_max_mm={max(2 * growth, 3):g}), another pose (--up), "
+        "A base (--base auto) or a larger one "
+        f"(--set stability.base_growth_max_mm={max(2 * growth, 3):g}), another pose (--up), "
         "or a smaller --lean.",
         value=reachable,
         limit=subject.lean_deg,

@@ -31,7 +31,7 @@ def show_result(
     ratio = 100 * result.mass_g / result.solid_mass_g
     facts.add_row(
         "mass",
-        f"{result.solid_mass_g:.4g} g → {result.mass_g:.4g} g ({ratio:.0f} % of the solid)",
+        f"{_mass(result.solid_mass_g)} → {_mass(result.mass_g)} ({ratio:.0f} % of the solid)",
     )
     before, after = result.stability_solid.tilt_deg, result.stability.tilt_deg
     facts.add_row(
@@ -44,13 +44,9 @@ def show_result(
         )
     facts.add_row("cavities", _cavities(result.part.cavities))
     facts.add_row("base", _base(result))
-    certificate = result.density.certificate
-    if certificate is not None:
-        facts.add_row(
-            "proof",
-            f"no filling of its voxels below {certificate.bound_g:.4g} g stands so "
-            f"(gap {max(certificate.gap, 0.0):.1g})",
-        )
+    proof = _proof(result)
+    if proof is not None:
+        facts.add_row("proof", proof)
     if verbose and result.density.aim_deg is not None:
         facts.add_row("solved for", f"{result.density.aim_deg:.2f}°, margin included")
     _add_repair(facts, result.solid.repair)
@@ -81,7 +77,7 @@ def show_check(
     facts = _facts_table()
     facts.add_row("size", " × ".join(f"{side:.4g}" for side in subject.size_mm) + " mm")
     mass_g = subject.part.volume() * profile.material.density_g_cm3 / 1000
-    facts.add_row("mass", f"{mass_g:.4g} g in {profile.material.name}")
+    facts.add_row("mass", f"{_mass(mass_g)} in {profile.material.name}")
     tilt = _lean(subject.stability.tilt_deg)
     facts.add_row("tips at", f"{tilt} (asked to stand {subject.lean_deg:g}°)")
     if subject.wall is not None:
@@ -149,11 +145,35 @@ def _lean(tilt_deg: float | None) -> str:
     return f"{tilt_deg:.1f}°" if tilt_deg >= 0 else f"{tilt_deg:.1f}° (falls by itself)"
 
 
+def _mass(mass_g: float) -> str:
+    if mass_g >= 1000:
+        return f"{_plain(mass_g / 1000)} kg"
+    return f"{_plain(mass_g)} g" if mass_g >= 0.1 or mass_g == 0 else f"{_plain(1000 * mass_g)} mg"
+
+
+def _plain(value: float) -> str:
+    """Three figures or more, never an exponent for what a printer can make."""
+    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}" if value < 100 else f"{value:.1f}"
+
+
+def _proof(result: HollowResult) -> str | None:
+    """What the certificate says, where there was something to choose."""
+    certificate, aim_deg = result.density.certificate, result.density.aim_deg
+    reachable = result.density.reachable_deg
+    if certificate is None or aim_deg is None or not result.part.cavities:
+        return None
+    if reachable is not None and reachable <= 0:
+        return None
+    gap = max(certificate.gap, 0.0)
+    least = _mass(certificate.bound_g)
+    return f"no filling of its voxels below {least} stands at {aim_deg:.1f}° (gap {gap:.1g})"
+
+
 def _cavities(cavities: Sequence[Manifold]) -> str:
     if not cavities:
         return "none"
-    volume = sum(cavity.volume() for cavity in cavities)
-    return f"{len(cavities)}, {volume / 1000:.3g} cm³"
+    volume_cm3 = sum(cavity.volume() for cavity in cavities) / 1000
+    return f"{len(cavities)}, {_plain(volume_cm3)} cm³"
 
 
 def _base(result: HollowResult) -> str:
@@ -161,7 +181,7 @@ def _base(result: HollowResult) -> str:
     if base is None:
         return "none"
     grown = f", footprint grown by {base.growth_mm:.2g} mm" if base.growth_mm else ""
-    return f"feet seated {base.seat_mm:.2g} mm{grown}, {base_mass_g(result):.3g} g"
+    return f"feet seated {base.seat_mm:.2g} mm{grown}, {_mass(base_mass_g(result))}"
 
 
 def _add_repair(facts: Table, repair: Repair) -> None:

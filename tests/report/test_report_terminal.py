@@ -29,10 +29,11 @@ def flat(text: str) -> str:
 def test_it_names_what_changed_and_where_the_file_is():
     text = flat(summary(hollow_result()))
     for fact in (
-        "9.92 g → 4.841 g (49 % of the solid)",
+        "9.92 g → 4.84 g (49 % of the solid)",
         "45.0° → 45.0° (asked to stand 10°)",
         "2.00 mm (profile 1.2 mm)",
         "cavities 1, 4.1 cm³",
+        "no filling of its voxels below 4.9 g stands at 10.5° (gap 2e-10)",
         "base none",
         "Written: out.3mf",
         "first layer of 0.2 mm, a 0.4 mm nozzle and PLA",
@@ -89,6 +90,25 @@ def test_base_and_falling_are_told():
     text = flat(summary(hollow_result(with_base=True, stability_solid=nothing, stability=falling)))
     assert "no contact → -3.0° (falls by itself)" in text
     assert "feet seated 1 mm, footprint grown by 2 mm, 0.218 g" in text
+
+
+@pytest.mark.parametrize(
+    ("grams", "words"),
+    [
+        (39834.2, "39.8 kg"), (1.5e6, "1500 kg"), (123.45, "123.5 g"), (4.8411, "4.84 g"),
+        (0.0234, "23.4 mg"),
+    ],
+)  # fmt: skip
+def test_masses_are_written_as_people_write_them(grams, words):
+    assert f"→ {words} (" in flat(summary(hollow_result(mass_g=grams)))
+
+
+def test_a_proof_only_where_something_stands():
+    density = hollow_result().density
+    falls = replace(density, reachable_deg=-2.0)
+    assert "proof" not in summary(hollow_result(density=falls))
+    paper = replace(density, aim_deg=None, certificate=None)
+    assert "proof" not in summary(hollow_result(density=paper))
 
 
 def test_advice_is_for_fdm_and_for_a_3mf():
