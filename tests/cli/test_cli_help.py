@@ -93,3 +93,13 @@ def test_the_reference_is_up_to_date():
     assert (ROOT / "docs/cli.md").read_text(encoding="utf-8") == made, (
         "run: python docs/make_cli_reference.py"
     )
+
+
+def test_choices_named_for_speed_are_those_of_the_library():
+    # The command line repeats them so that --help need not import the rooms they live in.
+    from printprep.cli import options
+    from printprep.mesh.read import MM_PER_UNIT
+    from printprep.profiles import DEFAULT_PROFILE
+
+    assert set(options.UNITS) == set(MM_PER_UNIT)
+    assert options.DEFAULT_PROFILE == DEFAULT_PROFILE
