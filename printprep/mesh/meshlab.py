@@ -51,7 +51,7 @@ def mended(vertices: Float, faces: Int) -> Iterator[Candidate | Refusal]:
         candidate = united(corners, turned)
         if isinstance(candidate, Candidate):
             said = (_sentence(faces, turned), *actions, *candidate.actions)
-            candidate = replace(candidate, actions=said, moved=True)
+            candidate = replace(candidate, actions=said)
         yield candidate
 
 

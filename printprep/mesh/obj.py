@@ -15,6 +15,8 @@ import numpy as np
 from printprep.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     Float = NDArray[np.float64]
@@ -35,9 +37,8 @@ def read_obj(data: bytes, what: str) -> tuple[Float, Int]:
     vertices: list[tuple[float, float, float]] = []
     faces: list[tuple[int, int, int]] = []
     lines: list[int] = []  # of each triangle: a face may name a vertex that comes later
-    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").replace("\\\n", " ")
-    for number, line in enumerate(text.split("\n"), start=1):
-        words = line.split()
+    for number, line in _lines(data):
+        words = line.partition("#")[0].split()
         if not words:
             continue
         if words[0] == "v":
@@ -58,6 +59,19 @@ def read_obj(data: bytes, what: str) -> tuple[Float, Int]:
     return np.array(vertices, dtype=np.float64).reshape(-1, 3), triangles
 
 
+def _lines(data: bytes) -> Iterator[tuple[int, str]]:
+    """Lines with their numbers, those that end in a backslash with the ones they go on in."""
+    # Latin-1 decodes every byte; only names can hold others, and they are not used.
+    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
+    begun = ""
+    for number, line in enumerate(text.split("\n"), start=1):
+        if line.endswith("\\"):
+            begun += line[:-1] + " "
+        else:
+            yield number, begun + line
+            begun = ""
+
+
 def _vertex(words: list[str], what: str, number: int) -> tuple[float, float, float]:
     try:
         return float(words[1]), float(words[2]), float(words[3])
@@ -68,7 +82,7 @@ def _vertex(words: list[str], what: str, number: int) -> tuple[float, float, flo
 def _corners(words: list[str], so_far: int, what: str, number: int) -> list[int]:
     """Zero-based vertex indices of a face; negative ones in the file count back from the last."""
     try:
-        named = [int(word.partition("/")[0]) for word in words[1:] if not word.startswith("#")]
+        named = [int(word.partition("/")[0]) for word in words[1:]]
     except ValueError as error:
         raise _malformed(what, number, "a corner of a face is not a whole number") from error
     if len(named) < 3:

@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING
 import manifold3d
 import numpy as np
 
-from printprep.mesh.measure import innermost, shells, signed_volumes, try_manifold
+from printprep.mesh.measure import (
+    innermost,
+    inverted,
+    shells,
+    signed_volumes,
+    together,
+    try_manifold,
+)
 from printprep.mesh.weld import components
 
 if TYPE_CHECKING:
@@ -38,13 +45,12 @@ _SEED = 20231121
 class Candidate:
     """What a rung offers.
 
-    moved : whether it may lie elsewhere than the model's own triangles.
+    actions : what was done, one sentence each;  resolution_mm : cell of a new surface, else None;
     slack_mm3 : volume the method may lose against the reference.
     """
 
     manifold: Manifold
     actions: tuple[str, ...] = ()
-    moved: bool = True
     resolution_mm: float | None = None
     slack_mm3: float = 0.0
 
@@ -92,7 +98,11 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
     if not _same(joined, before, sum(part.num_tri() for part in (*solids, *voids))):
         actions.append(f"United {shells_before} shells that overlap, touch or lie in one another.")
     elif status == "NoError" and not actions:
-        return Candidate(whole, moved=False)
+        return Candidate(whole)
+    solids, voids, dust = _without_dust(joined.decompose(), vertices)
+    if dust and solids:
+        joined = together([*solids, *(inverted(void) for void in voids)])
+        actions.append(f"Left out {dust} shell{'s' if dust > 1 else ''} that uniting left as dust.")
     return Candidate(joined, tuple(actions))
 
 
