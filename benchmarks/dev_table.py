@@ -139,9 +139,7 @@ def markdown(rows: list[dict[str, Any]]) -> str:
         "|" + "---|" * len(COLUMNS),
     ]
     for row in rows:
-        cells = [
-            "–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS
-        ]
+        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
         lines.append("| " + " | ".join(cells) + " |")
     feasible = [row for row in rows if row["exit"] == 0 and row["reachable_deg"] is None]
     if feasible:

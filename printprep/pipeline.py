@@ -53,8 +53,8 @@ def hollow(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.check import Subject, run_rules
     from printprep.cavity.surface import cavity_surface
+    from printprep.check import Subject, run_rules
     from printprep.density.solve import Program
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
@@ -143,5 +143,3 @@ def _check_numbers(resolution: int, lean_deg: float) -> None:
         raise UsageError(f"a resolution of {resolution} is not between 8 and 512 voxels")
     if not 0 <= lean_deg <= 60:
         raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
-
-

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.written import as_written
 from printprep.mesh.measure import bodies
+from printprep.mesh.written import as_written
 from printprep.types import Base, Part, Plane, Solid
 from printprep.voxel.balls import deepest_point
 from printprep.voxel.distance import Surface
@@ -25,17 +25,13 @@ STARTS = 8
 COARSE_CELLS = 12
 
 
-def cut(
-    room: Manifold, parts: Sequence[Manifold], planes: Sequence[Plane | None]
-) -> Manifold:
+def cut(room: Manifold, parts: Sequence[Manifold], planes: Sequence[Plane | None]) -> Manifold:
     """What of the room for cavities lies above the plane of its body; one plane for each part."""
     from manifold3d import Manifold, OpType
 
     if len(parts) == 1:
         return _above(room, planes[0])
-    pieces = [
-        _above(room ^ body, plane) for body, plane in zip(parts, planes, strict=True)
-    ]
+    pieces = [_above(room ^ body, plane) for body, plane in zip(parts, planes, strict=True)]
     return Manifold.batch_boolean(pieces, OpType.Add)
 
 

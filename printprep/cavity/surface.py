@@ -85,8 +85,8 @@ def _too_thin(outside: Surface, cavity: Surface, wall_mm: float) -> tuple[Float,
     """Points (n, 3) on the cavity that are too close to the outside, and by how much."""
     import igl
 
-    corners = cavity.vertices[cavity.faces]
-    inner = np.vstack([cavity.vertices, corners.mean(axis=1)])
+    # Vertices lie on the level set to pitch²/(8·wall), below the tolerance: chords are what is thin.
+    inner = cavity.vertices[cavity.faces].mean(axis=1)
     inner_distance = outside.distance_mm(inner)
     squared, _, nearest = igl.point_mesh_squared_distance(
         outside.vertices, cavity.vertices, cavity.faces

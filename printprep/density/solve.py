@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -93,11 +93,13 @@ class Program:
             if policy == "never" or self._cannot_be_beaten(best):
                 return best
         for base in self._bases(policy):
+            if best is not None and best.reached == np.inf and self._heavier(base, best):
+                break
             best = _better(best, self.solve(base, lean_deg, margin))
         if best is not None and best.base is not None and best.base.growth_mm > 0:
             for growth in self._around(best.base.growth_mm):
-                base = base_of(self.feet, growth)
-                best = _better(best, self.solve(base, lean_deg, margin))
+                nearby = base_of(self.feet, growth)
+                best = _better(best, self.solve(nearby, lean_deg, margin))
         # "always" on a solid whose feet are flat and cannot grow: there is nothing to add.
         return best if best is not None else self.solve(None, lean_deg, margin)
 
@@ -139,6 +141,11 @@ class Program:
             if base is not None:
                 yield base
 
+    def _heavier(self, base: Base, best: Choice) -> bool:
+        """Whether the bare shell with this base, and so with any wider one, outweighs the best."""
+        shell = sum(moments[0] for moments in self._moments) - self.interior.moments[0].sum()
+        return bool(shell + (base.manifold - self.feet.slab).volume() > best.volume_mm3)
+
     def _around(self, growth_mm: float) -> Iterator[float]:
         for growth in (growth_mm - GROWTH_STEP_MM / 2, growth_mm + GROWTH_STEP_MM / 2):
             if 0 < growth <= self.profile.stability.base_growth_max_mm:
@@ -150,9 +157,7 @@ class Program:
             part.solution is not None and part.solution.plane is None for part in choice.parts
         )
 
-    def _standing(
-        self, base: Base | None
-    ) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
+    def _standing(self, base: Base | None) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
         """The bodies that stand apart with a base: which of the solid's, section, moments."""
         from manifold3d import CrossSection
 
@@ -219,7 +224,9 @@ def paper_density(program: Program, choice: Choice) -> Density:
     from printprep.density.plane import solve_plane
 
     interior = program.interior
-    domain = interior.domain if choice.base is None else with_base(interior.domain, choice.base.manifold)
+    domain = (
+        interior.domain if choice.base is None else with_base(interior.domain, choice.base.manifold)
+    )
     frozen = domain.shell | domain.base
     free = domain.share > 0.5
     solid = frozen | domain.free
@@ -256,7 +263,7 @@ def _moments(manifold: Manifold) -> Float:
 
 
 def _joined(
-    solids: list[Manifold], pieces: list[Manifold]
+    solids: Sequence[Manifold], pieces: Sequence[Manifold]
 ) -> Iterator[tuple[tuple[int, ...], list[Manifold]]]:
     """Groups of bodies that pieces of a base join, each with its pieces."""
     from scipy.sparse import coo_array

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.voxel.balls import deepest_point
 from printprep.mesh.measure import bodies
 from printprep.types import Domain, Grid
+from printprep.voxel.balls import deepest_point
 from printprep.voxel.distance import DepthField, Surface, coarse_depth, refine
 from printprep.voxel.grid import (
     axis_mm,
@@ -169,7 +169,8 @@ def _shares(
     offset = (np.arange(factor) - (factor - 1) / 2) * field.grid.pitch_mm
     corner = field.grid.origin_mm + (factor - 1) / 2 * field.grid.pitch_mm
     first = np.round((corner - grid.origin_mm) / grid.pitch_mm).astype(int)
-    block = tuple(slice(f, f + n) for f, n in zip(first, (nx, ny, nz), strict=True))
+    x, y, z = (slice(int(f), int(f) + n) for f, n in zip(first, (nx, ny, nz), strict=True))
+    block = x, y, z
     share[block] = local_share
     some = np.maximum(local_share, 1e-300)
     for axis, keep in enumerate(((3, 5), (1, 5), (1, 3))):
@@ -178,13 +179,11 @@ def _shares(
         local = axis_mm(grid, axis)[block[axis]]
         shape = [1, 1, 1]
         shape[axis] = -1
-        centroid[(axis, *block)] = local.reshape(shape) + shift / some
+        centroid[axis][block] = local.reshape(shape) + shift / some
     return share, centroid
 
 
-def _body_of_cells(
-    manifold: Manifold, grid: Grid, cells: NDArray[np.bool_]
-) -> NDArray[np.int64]:
+def _body_of_cells(manifold: Manifold, grid: Grid, cells: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Which disjoint body each cell belongs to, −1 where none."""
     result = np.full(grid.shape, -1, dtype=np.int64)
     parts = bodies(manifold)

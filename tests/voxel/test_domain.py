@@ -97,9 +97,7 @@ def test_domain_arrays_partition_the_solid() -> None:
 def test_a_gap_below_the_minimum_feature_is_left_solid(thickness: float, hollow: bool) -> None:
     # Walls of 1.2 mm leave 1.15 and 1.25 mm of room: on either side of a feature of 1.2 mm.
     plate = solids.box(40, 30, thickness)
-    interior = build_interior(
-        solids.solid(plate), resolution=64, wall_mm=1.2, min_feature_mm=1.2
-    )
+    interior = build_interior(solids.solid(plate), resolution=64, wall_mm=1.2, min_feature_mm=1.2)
     assert (interior.field is not None) is hollow
 
 
