@@ -13,7 +13,7 @@ from printprep.types import HollowResult
 if TYPE_CHECKING:
     import trimesh
 
-    from printprep.density.solve import BasePolicy
+    from printprep.density.program import BasePolicy
     from printprep.profiles import Profile
     from printprep.types import Model
 
@@ -55,7 +55,7 @@ def hollow(
     """
     from printprep.cavity.surface import cavity_surface
     from printprep.check import Subject, run_rules
-    from printprep.density.solve import Program
+    from printprep.density.program import Program
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper

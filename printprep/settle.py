@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.cavity.carve import cavities_of, cut, make_part
-from printprep.density.solve import density_of, paper_density
+from printprep.density.outcome import density_of, paper_density
 from printprep.stand.stability import stability
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from printprep.density.solve import Choice, Program
+    from printprep.density.program import Choice, Program
     from printprep.types import Base, Density, Part, Plane, Solid, Stability
 
 # A new solve aims higher by what was lost and this much more.

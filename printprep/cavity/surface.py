@@ -85,7 +85,7 @@ def _too_thin(outside: Surface, cavity: Surface, wall_mm: float) -> tuple[Float,
     """Points (n, 3) on the cavity that are too close to the outside, and by how much."""
     import igl
 
-    # Vertices lie on the level set to pitch²/(8·wall), below the tolerance: chords are what is thin.
+    # Vertices lie on the level set to pitch²/(8·wall), below the tolerance: chords are thin.
     inner = cavity.vertices[cavity.faces].mean(axis=1)
     inner_distance = outside.distance_mm(inner)
     squared, _, nearest = igl.point_mesh_squared_distance(

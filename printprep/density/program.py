@@ -13,8 +13,7 @@ from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
 from printprep.mesh.measure import bodies, mass_properties
 from printprep.stand.contact import contact_of, section_at_bed
-from printprep.types import Base, Certificate, Density, Plane
-from printprep.voxel.domain import with_base
+from printprep.types import Base
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -186,64 +185,6 @@ class Program:
         return self._pools[cells]
 
 
-def density_of(choice: Choice, program: Program) -> Density:
-    """The choice as a density on the grid, with one plane for each body of the solid."""
-    domain = program.interior.domain
-    count = len(program.bodies)
-    planes: list[Plane | None] = [None] * count
-    rho = np.ones(int(domain.free.sum()))
-    for part in choice.parts:
-        if part.solution is None:
-            rho[part.voxels] = 0.0
-            continue
-        rho[part.voxels] = part.solution.filling.rho
-        for cell in part.cells:
-            planes[cell] = part.solution.plane
-    grid = (domain.shell | domain.free | domain.base).astype(float)
-    grid[domain.free] = 1.0 - domain.share[domain.free] * (1.0 - rho)
-    grams = program.profile.material.density_g_cm3 / 1000
-    reached = choice.reached
-    aims = [part.solution.aim_deg for part in choice.parts if part.solution is not None]
-    return Density(
-        rho=grid,
-        planes=tuple(planes),
-        aim_deg=min((aim for aim in aims if aim is not None), default=None),
-        reachable_deg=None if reached == np.inf else max(reached, -90.0),
-        certificate=Certificate(
-            voxel_mass_g=choice.volume_mm3 * grams,
-            bound_g=choice.bound_mm3 * grams,
-            gap=(choice.volume_mm3 - choice.bound_mm3) / choice.volume_mm3,
-        ),
-    )
-
-
-def paper_density(program: Program, choice: Choice) -> Density:
-    """The paper's objective on the same voxels: walls and base in mm, its terms in voxels."""
-    from printprep.density.objective import PaperSettings
-    from printprep.density.paper_domain import PaperDomain
-    from printprep.density.plane import solve_plane
-
-    interior = program.interior
-    domain = (
-        interior.domain if choice.base is None else with_base(interior.domain, choice.base.manifold)
-    )
-    frozen = domain.shell | domain.base
-    free = domain.share > 0.5
-    solid = frozen | domain.free
-    ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
-    nothing = np.zeros_like(free)
-    voxels = PaperDomain(solid, solid & ~free, free, nothing, free, ground)
-    solution = solve_plane(voxels, PaperSettings(resolution=max(domain.grid.shape)))
-    plane = None if solution.plane is None else solution.plane.in_mm(domain.grid)
-    return Density(
-        rho=solution.smoothed,
-        planes=(plane,) * len(program.bodies),
-        aim_deg=None,
-        reachable_deg=None,
-        certificate=None,
-    )
-
-
 def _better(first: Choice | None, second: Choice) -> Choice:
     """The lighter of two that stand, else the one that reaches farther; the first on a tie."""
     if first is None:
@@ -284,4 +225,4 @@ def _joined(
         members = np.flatnonzero(label == group)
         cells = tuple(int(m) for m in members if m < count)
         if cells:
-            yield cells, [pieces[m - count] for m in members if m >= count]
+            yield cells, [pieces[int(m) - count] for m in members if m >= count]
