@@ -213,6 +213,44 @@ class Stability:
     weakest_azimuth_deg: float | None
 
 
+@dataclass(frozen=True)
+class Settled:
+    """What became of a part that was let go on the bed; the worst body of it when several.
+
+    rotation_deg : how far it had turned in the end;  stands : whether that is less than falling.
+    seconds : of simulated time.
+    """
+
+    rotation_deg: float
+    stands: bool
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Tipping:
+    """The lean toward one azimuth at which a part tips over.
+
+    azimuth_deg : the direction it leans toward, from +x counter-clockwise.
+    computed_deg : from support polygon and centre of mass, negative when it tips by itself.
+    simulated_deg : 0 when it tips by itself, None when it had not tipped at the largest lean tried.
+    """
+
+    azimuth_deg: float
+    computed_deg: float
+    simulated_deg: float | None
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A part in the hands of a physics engine: let go, and on a bed that tilts slowly.
+
+    tippings : one for each azimuth tried, none for a part that has no contact.
+    """
+
+    settled: Settled
+    tippings: tuple[Tipping, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class HollowResult:
     """Everything ``hollow`` found out.  Masses are geometric volume times material density."""
@@ -230,6 +268,7 @@ class HollowResult:
     wall_min_mm: float | None
     findings: tuple[Finding, ...]
     seconds: Mapping[str, float] = field(default_factory=dict)
+    simulation: Simulation | None = None
 
     def write(self, path: Any) -> None:
         """Write the part; the suffix chooses the format (.3mf carries the settings)."""
