@@ -4,8 +4,9 @@
 
 Columns: free voxels n; the loss by Adam (fast) and by the plane, each in its own terms; how far the
 plane is below; the share of voxels with the same material, of the whole grid and of the free voxels
-alone; seconds of the fast Adam, of the plane with its linear form, and of the autograd reference
-(timed over --reference-steps and scaled to the steps of a full run); and the two ratios.
+alone; the plane's steps; seconds of the fast Adam, of the plane with its linear form, and of the
+autograd reference (on all of torch's threads, timed over --reference-steps and scaled to a full
+run); and the two ratios.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import torch
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "density"))
@@ -48,7 +50,7 @@ def row(path: Path, up: str, settings: PaperSettings, reference_steps: int) -> s
     adam, adam_s = timed(solve_adam, domain, settings)
     plane, plane_s = timed(solve_plane, domain, settings)
     short = PaperSettings(resolution=settings.resolution, steps=reference_steps)
-    _, short_s = timed(run_autograd, domain, short)
+    _, short_s = timed(run_autograd, domain, short, torch.get_num_threads())
     autograd_s = short_s * settings.steps / reference_steps
     below = (adam.terms.total - plane.terms.total) / abs(adam.terms.total)
     same = adam.material == plane.material

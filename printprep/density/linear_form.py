@@ -71,7 +71,8 @@ class LinearForm:
     def moments(self, rho: Float) -> Float:
         """(4,) s of the free densities (n,)."""
         # einsum sums in one thread and one order; a threaded BLAS has neither, and is no faster.
-        return self.s0 + np.einsum("kn,n->k", self.W, rho)
+        s: Float = self.s0 + np.einsum("kn,n->k", self.W, rho)
+        return s
 
     def contact(self, rho: Float) -> Float:
         """(m,) 4^(−k) ρ̃ of the contenders, for the free densities (n,)."""

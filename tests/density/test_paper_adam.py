@@ -62,7 +62,7 @@ def test_densities_have_moved_by_the_steps_compared():
     assert fast.trace == pytest.approx(plain.trace, abs=1e-3)
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(st.integers(0, 10_000))
 def test_plane_is_never_above_adam(seed):
     chosen = PaperSettings(resolution=12)

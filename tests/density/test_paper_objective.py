@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from paper_models import box, random_solid
 from paper_reference import Autograd
@@ -95,19 +95,20 @@ def test_smoothing_leaves_the_shell_and_clears_the_outside():
 
 
 @pytest.mark.parametrize("change", ABLATIONS, ids=str)
+@settings(max_examples=12)
 @given(seed=st.integers(0, 10_000))
 def test_value_and_gradient_match_convolution_and_autograd(change, seed):
     """Frozen noise included, in float64, for every ablation."""
-    settings = PaperSettings(**change)
-    domain = build_domain(random_solid(seed), settings)
+    chosen = PaperSettings(**change)
+    domain = build_domain(random_solid(seed), chosen)
     rng = np.random.default_rng(seed)
     whole = np.where(domain.shell, 1 - 0.1 * rng.random(domain.shape), 0.0)
     whole = np.where(domain.shell | domain.free, whole, 0.1 * rng.random(domain.shape))
     whole[domain.free] = rng.random(int(domain.free.sum()))
-    form = linear_form(domain, settings, whole)
+    form = linear_form(domain, chosen, whole)
     rho = whole[domain.free]
 
-    plain = Autograd(domain, settings, torch.float64)
+    plain = Autograd(domain, chosen, torch.float64)
     leaf = torch.from_numpy(whole).requires_grad_(True)
     loss = plain.loss(plain.smooth(leaf))
     if loss.requires_grad:
