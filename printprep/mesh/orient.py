@@ -48,7 +48,7 @@ def right_side_out(vertices: Float, faces: Int) -> tuple[Int, tuple[str, ...]]:
     actions = [f"Turned {turned} faces to agree with their neighbours."] if turned else []
     groups = components(alike, len(vertices))
     pieces = [_piece(vertices, alike[group]) for group in groups]
-    around = [_around(piece, pieces, vertices) for piece in pieces]
+    around = _around(pieces, vertices)
     outermost = [p for p, outer in zip(pieces, around, strict=True) if not outer and not p.sheet]
     sign = -1 if outermost and all(piece.volume < 0 for piece in outermost) else 1
     if sign < 0:
@@ -120,17 +120,21 @@ def _piece(vertices: Float, faces: Int) -> _Piece:
     )
 
 
-def _around(piece: _Piece, pieces: list[_Piece], vertices: Float) -> list[int]:
-    """Indices of the larger pieces that most of this piece's vertices lie inside of."""
-    found = []
-    for index, other in enumerate(pieces):
-        if other is piece or other.sheet or abs(other.volume) <= abs(piece.volume):
-            continue
-        if (piece.low < other.low).any() or (piece.high > other.high).any():
-            continue
-        inside = np.abs(winding(piece.witnesses, vertices, other.faces)) > 0.5
-        if 2 * int(inside.sum()) > len(inside):
-            found.append(index)
+def _around(pieces: list[_Piece], vertices: Float) -> list[list[int]]:
+    """For each piece, the indices of the larger ones that most of its vertices lie inside of."""
+    solid = [index for index, piece in enumerate(pieces) if not piece.sheet]
+    low = np.array([pieces[index].low for index in solid]).reshape(-1, 3)
+    high = np.array([pieces[index].high for index in solid]).reshape(-1, 3)
+    volume = np.array([abs(pieces[index].volume) for index in solid])
+    found: list[list[int]] = []
+    for piece in pieces:
+        boxed = (low <= piece.low).all(axis=1) & (high >= piece.high).all(axis=1)
+        candidates = np.flatnonzero(boxed & (volume > abs(piece.volume)))
+        found.append([])
+        for index in (solid[k] for k in candidates.tolist()):
+            inside = np.abs(winding(piece.witnesses, vertices, pieces[index].faces)) > 0.5
+            if 2 * int(inside.sum()) > len(inside):
+                found[-1].append(index)
     return found
 
 

@@ -92,7 +92,9 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
         actions.append(f"Left out {scraps} flat scrap{'s' if scraps > 1 else ''} of surface.")
     if dust:
         actions.append(f"Left out {dust} shell{'s' if dust > 1 else ''} too small to print.")
-    joined = _join(solids, voids)
+    joined, orphans = _join(solids, voids)
+    if orphans:
+        actions.append(f"Left out {orphans} inside-out shell{'s' if orphans > 1 else ''}.")
     before = sum(part.volume() for part in solids) - sum(part.volume() for part in voids)
     shells_before = len(solids) + len(voids)
     if not _same(joined, before, sum(part.num_tri() for part in (*solids, *voids))):
@@ -159,10 +161,11 @@ def _without_dust(
     return solids, voids, len(parts) - len(kept)
 
 
-def _join(solids: list[Manifold], voids: list[Manifold]) -> Manifold:
+def _join(solids: list[Manifold], voids: list[Manifold]) -> tuple[Manifold, int]:
+    """All solids without their voids, and how many voids lie in no solid."""
+    owners = [innermost(void, solids) for void in voids]
     owned: list[list[Manifold]] = [[] for _ in solids]
-    for void in voids:
-        owner = innermost(void, solids)
+    for void, owner in zip(voids, owners, strict=True):
         if owner is not None:
             owned[owner].append(void)
     boolean = manifold3d.Manifold.batch_boolean
@@ -171,7 +174,7 @@ def _join(solids: list[Manifold], voids: list[Manifold]) -> Manifold:
         boolean([solid, *inner], subtract) if inner else solid
         for solid, inner in zip(solids, owned, strict=True)
     ]
-    return carved[0] if len(carved) == 1 else boolean(carved, add)
+    return (carved[0] if len(carved) == 1 else boolean(carved, add)), owners.count(None)
 
 
 def _same(joined: Manifold, volume: float, triangles: int) -> bool:

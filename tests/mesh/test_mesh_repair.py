@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from mesh_bodies import box, inside_out, joined, model, sphere
 
 from printprep.errors import GeometryError
-from printprep.mesh import meshlab, meshlab_child
+from printprep.mesh import meshlab, meshlab_child, remesh
 from printprep.mesh.measure import arrays, bodies, shells
 from printprep.mesh.reference import Reference
-from printprep.mesh.remesh import CELLS, remeshed
+from printprep.mesh.remesh import remeshed
 from printprep.mesh.repair import repair
 from printprep.mesh.shells import Candidate
 from printprep.types import Solid
@@ -84,7 +84,7 @@ def test_shells(parts: list[Any], rung: str, volume: float, count: tuple[int, in
     assert solid.repair.moved_max_mm < 1e-9
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(st.integers(0, 2**31))
 def test_boxes_at_random_unite_to_their_measure(seed: int) -> None:
     """Boxes on whole millimetres: the union is counted cell by cell."""
@@ -127,8 +127,9 @@ def test_an_open_box_is_closed_flat() -> None:
     check(repair(model((vertices, faces[2:]))), "meshlab", 1000)
 
 
-def test_a_self_intersecting_shell_is_made_anew() -> None:
+def test_a_self_intersecting_shell_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tube swept along a figure of eight: one shell, which no boolean takes apart."""
+    monkeypatch.setattr(remesh, "CELLS", 120)
     turns, around = 120, 24
     t = np.linspace(0, 2 * np.pi, turns, endpoint=False)
     path = np.column_stack([30 * np.sin(t), 15 * np.sin(2 * t), np.zeros(turns)])
@@ -143,26 +144,29 @@ def test_a_self_intersecting_shell_is_made_anew() -> None:
     a, b = i * around + j, (i + 1) % turns * around + j
     c, d = (i + 1) % turns * around + (j + 1) % around, i * around + (j + 1) % around
     faces = np.vstack(
-        [np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)]
+        [np.stack([a, c, b], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]
     )
     solid = repair(model((vertices, faces)))
-    reference = Reference.of(vertices, faces if solid.repair.rung == "remesh" else faces[:, ::-1])
+    reference = Reference.of(vertices, faces)
     assert solid.repair.rung == "remesh"
     pitch = solid.repair.resolution_mm
-    assert pitch == pytest.approx(np.ptp(vertices, axis=0).max() / CELLS)
+    assert pitch == pytest.approx(np.ptp(vertices, axis=0).max() / 120)
     assert solid.repair.moved_max_mm < pitch
-    assert solid.manifold.volume() == pytest.approx(abs(reference.volume_mm3), rel=0.02)
+    assert solid.manifold.volume() == pytest.approx(reference.volume_mm3, rel=0.02)
 
 
 @pytest.mark.parametrize("cut", [0.0, 0.3])
-def test_remesh_keeps_a_ball_a_ball_open_or_not(cut: float) -> None:
+def test_remesh_keeps_a_ball_a_ball_open_or_not(
+    monkeypatch: pytest.MonkeyPatch, cut: float
+) -> None:
+    monkeypatch.setattr(remesh, "CELLS", 100)
     vertices, faces = sphere(10.0)
     kept = faces[vertices[faces][:, :, 0].max(axis=1) < 10 * (1 - cut)] if cut else faces
     found = remeshed(vertices, kept)
     assert isinstance(found, Candidate)
     corners, _ = arrays(found.manifold)
     radius = np.linalg.norm(corners, axis=1)
-    cell = 20 / CELLS
+    cell = 20 / 100
     on_ball = corners[:, 0] < 10 * (1 - cut) - 1
     assert np.abs(radius[on_ball] - 10).max() < cell
     assert len(bodies(found.manifold)) == 1
@@ -175,7 +179,7 @@ def test_remesh_keeps_a_ball_a_ball_open_or_not(cut: float) -> None:
     ("mesh", "fact"),
     [
         (box((0, 0, 0), (10, 10, 0)), "flat: it has no extent along z"),
-        (joined(OUTER, inside_out(OUTER)), "encloses no volume"),
+        ((OUTER[0], np.vstack([OUTER[1], inside_out(OUTER)[1]])), "encloses no volume"),
         ((OUTER[0], OUTER[1][:4]), "open sheet|cannot be made a solid|encloses no volume"),
     ],
 )
@@ -226,10 +230,11 @@ def test_a_child_that_fails_is_skipped_and_said_so(
     monkeypatch: pytest.MonkeyPatch, child: Child, calls: int, said: str | None
 ) -> None:
     monkeypatch.setattr(meshlab.subprocess, "run", child)
+    monkeypatch.setattr(remesh, "CELLS", 50)
     vertices, faces = OUTER
     solid = repair(model((vertices, faces[1:])))
     assert solid.repair.rung == "remesh"
-    assert solid.manifold.volume() == pytest.approx(1000, rel=0.02)
+    assert solid.manifold.volume() == pytest.approx(1000, rel=0.03)
     assert child.calls == calls
     skipped = [action for action in solid.repair.actions if "Skipped" in action]
     assert (skipped == []) if said is None else (said in skipped[0])
