@@ -159,7 +159,7 @@ def _mjcf(scene: Scene, step_s: float) -> str:
     ET.SubElement(
         body, "inertial", pos="0 0 0", mass="1", fullinertia=_numbers([xx, yy, zz, xy, xz, yz])
     )
-    for point in scene.points + [0.0, 0.0, _POINT_RADIUS]:
+    for point in np.add(scene.points, [0.0, 0.0, _POINT_RADIUS]):
         ET.SubElement(body, "geom", type="sphere", size=repr(_POINT_RADIUS), pos=_numbers(point))
     return ET.tostring(root, encoding="unicode")
 
