@@ -107,8 +107,8 @@ def judged(model: Path, up: str, size_mm: float, part: Path, slice_it: bool) -> 
     outside, _ = judges.outside_and_cavities(mesh)
     points = judges.samples(judges.Mesh(placed.vertices, placed.faces))
     squared, _, _ = igl.point_mesh_squared_distance(points, outside.vertices, outside.faces)
-    # Where a base was added, the input's outside is buried in it: seat and feet, below 1 mm.
-    above = points[:, 2] > 1.001
+    # Where a base was added, the input's outside is buried in it, up to the seat's height.
+    above = points[:, 2] > 1.05
     slicer = find_slicer()
     info = slicer.info(part)
     row = {

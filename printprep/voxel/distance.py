@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays, distance_to_mesh_mm, winding
+from printprep.mesh.columns import winding_at
+from printprep.mesh.measure import arrays, distance_to_mesh_mm
 from printprep.types import Grid
 from printprep.voxel.grid import points_mm, subdivided
 
@@ -47,8 +48,15 @@ class Surface:
         return distance_to_mesh_mm(points, self.vertices, self.faces)
 
     def contains(self, points: Float) -> NDArray[np.bool_]:
-        """(n,) bool, inside by generalized winding number."""
-        result: NDArray[np.bool_] = winding(points, self.vertices, self.faces) > 0.5
+        """(n,) bool, inside by the exact winding number along the vertical through each point.
+
+        Verticals are moved by a millionth of the surface's size, since symmetric models have
+        corners exactly above cell centres.
+        """
+        size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
+        jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, (len(points), 2)) * size
+        moved = np.column_stack([points[:, :2] + jitter, points[:, 2]])
+        result: NDArray[np.bool_] = winding_at(moved, self.vertices, self.faces) > 0.5
         return result
 
     def depth_mm(self, points: Float) -> Float:

@@ -33,7 +33,7 @@ def test_the_room_in_a_cube_is_the_inner_cube() -> None:
     cube = solids.box(40, 40, 40)
     room = room_in(cube, 2.0)
     assert 0.99 * 36**3 < room.volume() < 36**3 * 1.0005
-    assert thinnest(cube, room) >= 2.0 - 0.03
+    assert thinnest(cube, room) >= 2.0 - 0.04
     assert np.allclose(room.bounding_box(), [-18, -18, 2, 18, 18, 38], atol=0.03)
 
 
@@ -41,21 +41,21 @@ def test_the_room_in_a_ball_is_the_inner_ball() -> None:
     ball = solids.sphere(20)
     room = room_in(ball, 2.0)
     assert room.volume() == pytest.approx(4 / 3 * np.pi * 18**3, rel=4e-3)
-    assert thinnest(ball, room) >= 2.0 - 0.03
+    assert thinnest(ball, room) >= 2.0 - 0.04
 
 
 def test_reentrant_edges_keep_their_wall() -> None:
     # The groove's two edges point into the material: offset surfaces bulge toward chords there.
     block = solids.box(40, 40, 40) - solids.box(6, 60, 10).translate((0, 0, 30))
     room = room_in(block, 1.2)
-    assert 1.2 - 0.035 <= thinnest(block, room) <= 1.2 + 0.03
+    assert 1.2 - 0.04 <= thinnest(block, room) <= 1.2 + 0.03
 
 
 def test_walls_are_measured_from_voids_the_model_already_has() -> None:
     void = solids.box(8, 8, 8).translate((0, 0, 16))
     cube = solids.box(40, 40, 40) - void
     room = room_in(cube, 2.0)
-    assert thinnest(void, room) >= 2.0 - 0.03
+    assert thinnest(void, room) >= 2.0 - 0.04
     part = make_part(solids.solid(cube), None, cavities_of(room, 1.0))
     # Two shells of the outside and two of the cavity, which surrounds the old void.
     assert len(part.manifold.decompose()) == 4
@@ -74,7 +74,7 @@ def test_random_unions_keep_wall_and_manifold(seed: int) -> None:
     room = room_in(solid, 1.2)
     if room.is_empty():
         return
-    assert thinnest(solid, room) >= 1.2 - 0.035
+    assert thinnest(solid, room) >= 1.2 - 0.04
     part = make_part(solids.solid(solid), None, cavities_of(room, 1.0))
     removed = sum(cavity.volume() for cavity in part.cavities)
     assert part.manifold.volume() == pytest.approx(solid.volume() - removed, rel=1e-5)

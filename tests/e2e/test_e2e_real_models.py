@@ -1,0 +1,55 @@
+"""The installed command on real models, judged by lib3mf, libigl and the real slicer.
+
+``benchmarks/dev_table.py`` measures all of the collection in the same way; these are the ones with
+something to go wrong: a scan, thin limbs, feet in the air, open surfaces, many bodies.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import CatalogueModel
+from dev_table import measure
+
+WALL_MM, LEAN_DEG = 1.2, 10.0
+
+MODELS = (
+    "cow",
+    "goathead",
+    "spot_low_resolution",
+    "penguin",
+    "demosthenes-low-res",
+    "rabbit",
+    "wingnut",
+    "torus",
+    "teapot",
+    "chair",
+    "candle_melted",
+    "angle_block",
+)
+
+
+@pytest.mark.slicer
+@pytest.mark.corpus
+@pytest.mark.parametrize("stem", MODELS)
+def test_a_real_model_is_hollowed_and_prints(
+    stem: str, dev_models: dict[str, CatalogueModel], prusa_slicer: Path
+) -> None:
+    model = dev_models[stem]
+    row = measure(model.path, model.up, 100.0, "fdm-pla-0.4", slice_it=True)
+    assert row["exit"] == 0, row
+    assert row["stderr"] == ""
+    assert (row["lib3mf"], row["manifold"], row["sliced"]) == ("clean", "yes", "yes")
+    if row["judged_wall_mm"] is not None:
+        assert row["judged_wall_mm"] >= WALL_MM - 0.05
+        assert row["wall_min_mm"] == pytest.approx(row["judged_wall_mm"], abs=0.02)
+    if row["repair"] == "as-is":
+        assert row["outside_moved_mm"] <= 0.001
+    if row["reachable_deg"] is None:
+        assert row["tilt_deg"] >= LEAN_DEG
+        assert not row["errors"]
+    else:
+        assert row["reachable_deg"] < LEAN_DEG
+        assert "lean-out-of-reach" in row["errors"]
+    assert row["mass_g"] <= row["solid_mass_g"] * 1.02
