@@ -228,16 +228,21 @@ class Settled:
 
 @dataclass(frozen=True)
 class Tipping:
-    """The lean toward one azimuth at which a part tips over.
+    """What becomes of a part that leans ever more toward one azimuth.
 
     azimuth_deg : the direction it leans toward, from +x counter-clockwise.
-    computed_deg : from support polygon and centre of mass, negative when it tips by itself.
-    simulated_deg : 0 when it tips by itself, None when it had not tipped at the largest lean tried.
+    computed_deg : its tilt angle that way, from support polygon and centre of mass; negative when
+    it tips by itself.
+    tips_deg : the lean at which its foot comes off the bed in simulation.
+    falls_deg : the lean at which it goes over; more than tips_deg where another part of it, a
+    wing or a tail, comes down on the bed and holds it.
+    Both are 0 when it happens on the level bed, None when not up to the largest lean tried.
     """
 
     azimuth_deg: float
     computed_deg: float
-    simulated_deg: float | None
+    tips_deg: float | None
+    falls_deg: float | None
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ class Motion:
         self._scene = scene
         self._model = compiled(scene, step_s)
         self._data = mujoco.MjData(self._model)
+        mujoco.mj_forward(self._model, self._data)
 
     def lean(self, lean_deg: float, azimuth_deg: float) -> None:
         """From now on the bed leans by so much toward an azimuth (from +x counter-clockwise)."""
@@ -44,9 +45,10 @@ class Motion:
         return np.array(self._data.body("body").xmat).reshape(3, 3)
 
     @property
-    def shift_mm(self) -> Float:
-        """(3,) where its centre of mass is, relative to the point of the bed it stood over."""
-        return np.array(self._data.qpos[:3]) * self._scene.unit_mm
+    def position_mm(self) -> Float:
+        """(3,) where its centre of mass is; it began over its own place on the bed."""
+        start = np.array([*self._scene.centre_mm[:2], 0.0])
+        return start + np.array(self._data.qpos[:3]) * self._scene.unit_mm
 
     @property
     def rotation_deg(self) -> float:

@@ -55,12 +55,14 @@ class Scene:
 
     points : (n, 3) contact points about the centre of mass;  height : of that centre above the
     bed;  inertia : (3, 3) about it, mass 1;  all in units of ``unit_mm``, the radius of gyration.
+    centre_mm : (3,) the centre of mass, in the part's own place.
     """
 
     points: Float
     height: float
     inertia: Float
     unit_mm: float
+    centre_mm: Float
 
     @property
     def gravity(self) -> float:
@@ -84,6 +86,7 @@ def scene_of(body: Manifold, first_layer_mm: float) -> Scene:
         height=(centre[2] - bed) / unit_mm,
         inertia=inertia / unit_mm**2,
         unit_mm=unit_mm,
+        centre_mm=centre,
     )
 
 

@@ -15,13 +15,17 @@ from printprep.stand.stability import stability
 from printprep.types import Tipping
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from manifold3d import Manifold
 
 AZIMUTHS = 8
+# A foot that has come off the bed by so much does not come back; the bed gives way by far less.
+TIPS_ABOVE_DEG = 1.0
 
 # A body past its tipping point falls as exp(t √(g/l)), some fifteen-fold in 0.2 s, so a bed that
-# tilts at a rate r has tilted about 0.2 r degrees further by then.  A quick sweep brackets the
-# angle, and a slow one from shortly before finds it to about a tenth of a degree.
+# tilts at a rate r has tilted about 0.4 r further by the time it shows.  A quick sweep brackets
+# the angle, and a slow one from shortly before finds it to about 0.2°.
 _QUICK_DEG_S, _SLOW_DEG_S = 4.0, 0.5
 _BACK_DEG = 2.0
 _CONTROL_STEPS = 10
@@ -45,49 +49,67 @@ def tilt_test(
     scenes = [scene_of(body, first_layer_mm) for body in each]
     around = {360.0 * index / azimuths for index in range(azimuths)}
     tippings = []
-    for azimuth in sorted(around | {weakest.weakest_azimuth_deg}):
-        computed = [directional_tilt_deg(one, azimuth) for one in standing]
-        simulated = [tipping_lean_deg(scene, azimuth) for scene in scenes]
-        tippings.append(
-            Tipping(
-                azimuth_deg=azimuth,
-                computed_deg=min(angle for angle in computed if angle is not None),
-                simulated_deg=min(
-                    (angle for angle in simulated if angle is not None), default=None
-                ),
-            )
-        )
+    for azimuth in sorted(around | {round(weakest.weakest_azimuth_deg, 6) % 360.0}):
+        angles = [directional_tilt_deg(one, azimuth) for one in standing]
+        least = min(angle for angle in angles if angle is not None)
+        tips, falls = zip(*(tip(scene, azimuth) for scene in scenes), strict=True)
+        tippings.append(Tipping(azimuth, least, _least(tips), _least(falls)))
     return tuple(tippings)
 
 
-def tipping_lean_deg(scene: Scene, azimuth_deg: float) -> float | None:
-    """The lean toward an azimuth at which one body tips over in simulation.
+def tip(scene: Scene, azimuth_deg: float) -> tuple[float | None, float | None]:
+    """The leans toward an azimuth at which one body's foot leaves the bed, and it goes over.
 
-    0 when it falls on the level bed already, None when it holds to MOST_LEAN_DEG.
+    0 when that happens on the level bed, None when not up to MOST_LEAN_DEG.
     """
     motion = Motion(scene)
     motion.advance(round(_SETTLE_S / _CONTROL_S) * _CONTROL_STEPS)
-    states = [(0.0, motion.state())]
-    quick = _QUICK_DEG_S * _CONTROL_S
-    for count in range(1, round(MOST_LEAN_DEG / quick) + 1):
-        lean = count * quick
-        if _tipped(motion, lean, azimuth_deg):
-            break
-        states.append((lean, motion.state()))
-    else:
-        return None
-    start, state = states[max(0, len(states) - 1 - round(_BACK_DEG / quick))]
-    motion.resume(state)
-    slow = _SLOW_DEG_S * _CONTROL_S
-    lean = start
-    while lean < MOST_LEAN_DEG:
-        if _tipped(motion, lean, azimuth_deg):
-            return lean
-        lean += slow
-    return None
+    quick = _Sweep(motion, azimuth_deg, _QUICK_DEG_S, 0.0)
+    tips = quick.until(TIPS_ABOVE_DEG)
+    falls = quick.until(STANDS_BELOW_DEG)
+    if tips is None:
+        return None, None
+    slow = quick.again_before(tips)
+    tips = slow.until(TIPS_ABOVE_DEG)
+    if falls is None:
+        return tips, None
+    if falls - slow.lean_deg > _BACK_DEG:  # something else holds it for a while
+        slow = quick.again_before(falls)
+    return tips, slow.until(STANDS_BELOW_DEG)
 
 
-def _tipped(motion: Motion, lean_deg: float, azimuth_deg: float) -> bool:
-    motion.lean(lean_deg, azimuth_deg)
-    motion.advance(_CONTROL_STEPS)
-    return motion.tilt_deg >= STANDS_BELOW_DEG
+class _Sweep:
+    """A bed that tilts evenly, from a lean on, toward one azimuth."""
+
+    def __init__(self, motion: Motion, azimuth_deg: float, rate_deg_s: float, lean: float) -> None:
+        self._motion = motion
+        self._azimuth_deg = azimuth_deg
+        self._per_control = rate_deg_s * _CONTROL_S
+        self._from_deg = lean
+        self._states = [motion.state()]
+
+    @property
+    def lean_deg(self) -> float:
+        """The lean it has come to."""
+        return self._from_deg + (len(self._states) - 1) * self._per_control
+
+    def until(self, tilt_deg: float) -> float | None:
+        """Go on until the body has turned over so far; the lean then, None if it does not."""
+        while self._motion.tilt_deg < tilt_deg:
+            if self.lean_deg >= MOST_LEAN_DEG:
+                return None
+            self._motion.lean(self.lean_deg, self._azimuth_deg)
+            self._motion.advance(_CONTROL_STEPS)
+            self._states.append(self._motion.state())
+        return self.lean_deg
+
+    def again_before(self, lean_deg: float) -> _Sweep:
+        """The same, slowly, from shortly before a lean of this sweep, with the state of then."""
+        back = round((max(lean_deg - _BACK_DEG, 0.0) - self._from_deg) / self._per_control)
+        self._motion.resume(self._states[back])
+        start = self._from_deg + back * self._per_control
+        return _Sweep(self._motion, self._azimuth_deg, _SLOW_DEG_S, start)
+
+
+def _least(angles: Sequence[float | None]) -> float | None:
+    return min((angle for angle in angles if angle is not None), default=None)
