@@ -10,7 +10,7 @@ import numpy as np
 from printprep.mesh.measure import bodies
 from printprep.mesh.written import as_written
 from printprep.types import Base, Part, Plane, Solid
-from printprep.voxel.balls import deepest_point
+from printprep.voxel.balls import deepest_points
 from printprep.voxel.distance import Surface
 
 if TYPE_CHECKING:
@@ -76,11 +76,9 @@ def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
         if step <= finest:
             break
         step = max(finest, step / 2)
-    for start in np.argsort(-depth, kind="stable")[:STARTS]:
-        _, deepest = deepest_point(surface.depth_mm, points[start], finest)
-        if deepest >= radius_mm:
-            return True
-    return False
+    starts = points[np.argsort(-depth, kind="stable")[:STARTS]]
+    _, deepest = deepest_points(surface.depth_mm, starts, finest)
+    return bool(deepest.max() >= radius_mm)
 
 
 def _lattice(box: Float, step_mm: float) -> Float:

@@ -13,30 +13,35 @@ Float = NDArray[np.float64]
 _STENCIL = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
 
-def deepest_point(
-    depth_mm: Callable[[Float], Float], start: Float, step_mm: float, tolerance: float = 1e-3
-) -> tuple[Float, float]:
-    """Climb to a local maximum of a depth function.
+def deepest_points(
+    depth_mm: Callable[[Float], Float], starts: Float, step_mm: float, tolerance: float = 1e-3
+) -> tuple[Float, Float]:
+    """Climb from each start to a local maximum of a depth function, all of them in step.
 
     Parameters
     ----------
-    depth_mm : (n, 3) points to (n,) depths; positive inside.
-    start : (3,) mm;  step_mm : first step, about the accuracy of the start.
+    depth_mm : (n, 3) points to (n,) depths, positive inside; one call serves all starts, since a
+        search tree is built for each.
+    starts : (k, 3) mm;  step_mm : first step, about the accuracy of the starts.
     tolerance : last step as a share of the first.
 
     Returns
     -------
-    The point and its depth, which is the radius of the ball inscribed there.
+    (k, 3) points and (k,) depths, each the radius of the ball inscribed there.
     """
-    point = np.asarray(start, dtype=float)
-    best = float(depth_mm(point[None])[0])
-    step = step_mm
-    while step > step_mm * tolerance:
-        around = point + step * _STENCIL
-        values = depth_mm(around)
-        top = int(np.argmax(values))
-        if values[top] > best + 1e-12:
-            point, best = around[top], float(values[top])
-        else:
-            step /= 2
-    return point, best
+    points = np.array(starts, dtype=float)
+    best = depth_mm(points)
+    steps = np.full(len(points), step_mm)
+    while True:
+        climbing = np.flatnonzero(steps > step_mm * tolerance)
+        if len(climbing) == 0:
+            return points, best
+        around = points[climbing, None] + steps[climbing, None, None] * _STENCIL
+        values = depth_mm(around.reshape(-1, 3)).reshape(len(climbing), len(_STENCIL))
+        top = values.argmax(axis=1)
+        highest = values[np.arange(len(climbing)), top]
+        better = highest > best[climbing] + 1e-12
+        moved = climbing[better]
+        points[moved] = around[better, top[better]]
+        best[moved] = highest[better]
+        steps[climbing[~better]] /= 2

@@ -14,7 +14,7 @@ import numpy as np
 
 from printprep.mesh.measure import bodies
 from printprep.types import Domain, Grid
-from printprep.voxel.balls import deepest_point
+from printprep.voxel.balls import deepest_points
 from printprep.voxel.distance import DepthField, Surface, coarse_depth, refine
 from printprep.voxel.grid import (
     axis_mm,
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from printprep.types import Solid
+
+    Float = NDArray[np.float64]
 
 # Cells of the fine field per wall: at three, the facets of a surface of curvature radius `wall`
 # stay within (wall/3)²·2/(8·wall) = 0.028 wall of it.
@@ -128,27 +130,37 @@ def close_small_pockets(
     surface: Surface, field: DepthField, wall_mm: float, min_feature_mm: float
 ) -> DepthField | None:
     """The field with every pocket closed that cannot hold a ball of the minimum feature."""
-    from scipy.ndimage import find_objects, label
+    from scipy.ndimage import label
 
     pocket, count = label(field.depth_mm > wall_mm)
     roomy = np.unique(pocket[field.depth_mm >= wall_mm + min_feature_mm / 2])
     small = np.ones(count + 1, dtype=bool)
     small[[0, *roomy]] = False
-    boxes = find_objects(pocket)
-    for number in np.flatnonzero(small):
-        box = boxes[number - 1]
-        inside = np.where(pocket[box] == number, field.depth_mm[box], -np.inf)
-        peak = np.unravel_index(int(np.argmax(inside)), inside.shape)
-        index = np.array([axis.start for axis in box]) + peak
-        start = field.grid.origin_mm + field.grid.pitch_mm * index
-        _, depth = deepest_point(surface.distance_mm, start, field.grid.pitch_mm)
-        small[number] = depth - wall_mm < min_feature_mm / 2
+    doubtful = np.flatnonzero(small)
+    if len(doubtful):
+        starts = _peaks(pocket, doubtful, field)
+        _, depth = deepest_points(surface.distance_mm, starts, field.grid.pitch_mm)
+        small[doubtful] = depth - wall_mm < min_feature_mm / 2
     if not small.any():
         return field
     if small[1:].all():
         return None
     closed = np.where(small[pocket], np.float32(wall_mm - field.grid.pitch_mm / 2), field.depth_mm)
     return DepthField(field.grid, closed)
+
+
+def _peaks(pocket: NDArray[np.int32], numbers: NDArray[np.intp], field: DepthField) -> Float:
+    """(k, 3) where the field is deepest in each of these pockets."""
+    from scipy.ndimage import find_objects
+
+    boxes = find_objects(pocket)
+    peaks = []
+    for number in numbers:
+        box = boxes[number - 1]
+        inside = np.where(pocket[box] == number, field.depth_mm[box], -np.inf)
+        peak = np.unravel_index(int(np.argmax(inside)), inside.shape)
+        peaks.append([axis.start + at for axis, at in zip(box, peak, strict=True)])
+    return field.grid.origin_mm + field.grid.pitch_mm * np.array(peaks)
 
 
 def _shares(
