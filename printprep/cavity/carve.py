@@ -77,7 +77,7 @@ def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
             break
         step = max(finest, step / 2)
     starts = points[np.argsort(-depth, kind="stable")[:STARTS]]
-    _, deepest = deepest_points(surface.depth_mm, starts, finest)
+    _, deepest = deepest_points(surface.depth_mm, starts, finest, radius_mm)
     return bool(deepest.max() >= radius_mm)
 
 

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 Float = NDArray[np.float64]
 
+# The last step as a share of the first: how exact a depth becomes.
+LAST_STEP = 0.01
 _STENCIL = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
 
 def deepest_points(
-    depth_mm: Callable[[Float], Float], starts: Float, step_mm: float, tolerance: float = 1e-3
+    depth_mm: Callable[[Float], Float], starts: Float, step_mm: float, enough_mm: float
 ) -> tuple[Float, Float]:
     """Climb from each start to a local maximum of a depth function, all of them in step.
 
@@ -23,7 +25,7 @@ def deepest_points(
     depth_mm : (n, 3) points to (n,) depths, positive inside; one call serves all starts, since a
         search tree is built for each.
     starts : (k, 3) mm;  step_mm : first step, about the accuracy of the starts.
-    tolerance : last step as a share of the first.
+    enough_mm : a climb ends when it is this deep.
 
     Returns
     -------
@@ -33,7 +35,7 @@ def deepest_points(
     best = depth_mm(points)
     steps = np.full(len(points), step_mm)
     while True:
-        climbing = np.flatnonzero(steps > step_mm * tolerance)
+        climbing = np.flatnonzero((steps > step_mm * LAST_STEP) & (best < enough_mm))
         if len(climbing) == 0:
             return points, best
         around = points[climbing, None] + steps[climbing, None, None] * _STENCIL

@@ -15,7 +15,7 @@ import numpy as np
 from printprep.mesh.measure import bodies
 from printprep.types import Domain, Grid
 from printprep.voxel.balls import deepest_points
-from printprep.voxel.distance import DepthField, Surface, coarse_depth, refine
+from printprep.voxel.distance import LIPSCHITZ, DepthField, Surface, coarse_depth, refine
 from printprep.voxel.grid import (
     axis_mm,
     block_around,
@@ -136,11 +136,14 @@ def close_small_pockets(
     roomy = np.unique(pocket[field.depth_mm >= wall_mm + min_feature_mm / 2])
     small = np.ones(count + 1, dtype=bool)
     small[[0, *roomy]] = False
-    doubtful = np.flatnonzero(small)
+    # Between cell centres a pocket is deeper than at them by half a cell's diagonal at most.
+    pitch, enough = field.grid.pitch_mm, wall_mm + min_feature_mm / 2
+    hopeful = np.unique(pocket[field.depth_mm >= enough - LIPSCHITZ * pitch])
+    doubtful = hopeful[small[hopeful] & (hopeful > 0)]
     if len(doubtful):
         starts = _peaks(pocket, doubtful, field)
-        _, depth = deepest_points(surface.distance_mm, starts, field.grid.pitch_mm)
-        small[doubtful] = depth - wall_mm < min_feature_mm / 2
+        _, depth = deepest_points(surface.distance_mm, starts, pitch, enough)
+        small[doubtful] = depth < enough
     if not small.any():
         return field
     if small[1:].all():
