@@ -1,0 +1,103 @@
+"""What the rule needs of polygons: growing, closing, windows, and pieces that are new.
+
+Contours are (k, 2) arrays in mm; outer ones run counter-clockwise, holes clockwise.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import CrossSection
+
+    from printprep.types import Float
+
+ARC_SEGMENTS = 16
+# Clipping moves corners by its own rounding; the same contour is still found again within this.
+SAME_MM = 1e-3
+# Regions below this are what clipping rounds off.
+LEAST_AREA_MM2 = 1e-4
+
+
+def grown(region: CrossSection, radius_mm: float) -> CrossSection:
+    """The region grown by a disc, shrunk where the radius is negative."""
+    from manifold3d import JoinType
+
+    return region.offset(radius_mm, JoinType.Round, 2.0, ARC_SEGMENTS)
+
+
+def closed(region: CrossSection, radius_mm: float) -> CrossSection:
+    """The region closed by a disc, opened where the radius is negative."""
+    return grown(grown(region, radius_mm), -radius_mm)
+
+
+def regions(outlines: Sequence[Float]) -> CrossSection:
+    """What the contours enclose, whichever way they run; together."""
+    from manifold3d import CrossSection, FillRule
+
+    return CrossSection(list(outlines), FillRule.NonZero) if outlines else CrossSection()
+
+
+def windows(outlines: Sequence[Float], margin_mm: float) -> CrossSection:
+    """The bounding boxes of contours, each widened by a margin, as one region."""
+    from manifold3d import CrossSection, OpType
+
+    boxes = []
+    for outline in outlines:
+        low, high = outline.min(axis=0) - margin_mm, outline.max(axis=0) + margin_mm
+        boxes.append(CrossSection.square((high - low).tolist()).translate(low.tolist()))
+    return CrossSection.batch_boolean(boxes, OpType.Add)
+
+
+def new_pieces(here: CrossSection, below: CrossSection) -> list[Float]:
+    """Pieces of material enclosed by the void ``here`` that lie wholly over the void ``below``.
+
+    Such a piece is a hole of the one, and an outline of what the other has more, unless that
+    outline itself has a hole where something stands.
+    """
+    holes, edges = _measured(here, -1)
+    if not holes:
+        return []
+    _, fresh = _measured(below - here, 1)
+    if not len(fresh):
+        return []
+    same = np.abs(edges[:, None] - fresh[None]).max(axis=2) < SAME_MM
+    maybe = [hole for hole, found in zip(holes, same.any(axis=1), strict=True) if found]
+    return [hole for hole in maybe if (regions([hole]) - below).area() < LEAST_AREA_MM2]
+
+
+def _measured(region: CrossSection, turn: int) -> tuple[list[Float], Float]:
+    """Contours that run one way (+1 counter-clockwise), and (k, 4) the boxes around them."""
+    outlines = region.to_polygons()
+    if not outlines:
+        return [], np.zeros((0, 4))
+    points = np.concatenate(outlines)
+    starts = np.cumsum([0, *(len(outline) for outline in outlines[:-1])])
+    following = np.arange(1, len(points) + 1)
+    following[np.append(starts[1:], len(points)) - 1] = starts
+    after = points[following]
+    doubled = np.add.reduceat(points[:, 0] * after[:, 1] - points[:, 1] * after[:, 0], starts)
+    boxes = np.hstack([np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts)])
+    kept = np.flatnonzero(doubled * turn > 0)
+    return [outlines[i] for i in kept], boxes[kept]
+
+
+def centroid(outlines: Sequence[Float]) -> tuple[float, tuple[float, float]]:
+    """Area in mm² and centroid of a region given by its contours, holes clockwise."""
+    area, moment = 0.0, np.zeros(2)
+    for outline in outlines:
+        start = outline[0]  # measured from there, small patches lose no digits
+        near = outline - start
+        after = np.roll(near, -1, axis=0)
+        cross = near[:, 0] * after[:, 1] - near[:, 1] * after[:, 0]
+        part = float(cross.sum()) / 2
+        area += part
+        moment += part * start + (cross[:, None] * (near + after)).sum(axis=0) / 6
+    if area <= 0:
+        return 0.0, (0.0, 0.0)
+    x, y = (moment / area).tolist()
+    return area, (x, y)

@@ -1,0 +1,159 @@
+"""The slicer's acceptance rule, layer by layer, on voids inside a part or on a whole part.
+
+Notation: M the material of a layer, V a void in it, M₋ and V₋ those of the layer below, all
+closed first (material closed by c is void opened by c, V ∘ c); ⊕ and ⊖ grow and shrink.  A layer's
+overhang is what M has beyond M₋ ⊕ off.  Inside a cavity, whose wall is thicker than off, growing
+the material is shrinking the void, so the outside need not be looked at:
+
+    flagged = (V₋ ∘ c ⊖ off) − V ∘ c.
+
+An island is a piece of M, enclosed by V, with no material at all under it.
+
+Nearly all layers are acquitted without opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋,
+so what is flagged lies in the suspect (V₋ ⊖ off) − (V ⊖ c), which is empty wherever
+tan θ ≤ (off − c) / h.  The rest is looked at exactly, around the suspects only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.overhang.polygons import (
+    LEAST_AREA_MM2,
+    centroid,
+    closed,
+    grown,
+    new_pieces,
+    regions,
+    windows,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from manifold3d import CrossSection, Manifold
+
+    from printprep.overhang.limits import Acceptance
+    from printprep.types import Float
+
+# Slices are simplified by this much: a hundredth of what decides.
+SIMPLIFY_MM = 0.002
+# So much around a suspect is looked at too; off, the opening and its arcs reach less far.
+AROUND_MM = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Flagged:
+    """One patch of a layer with too little under it.
+
+    z_mm : underside of the layer;  outline_mm : contours (k, 2), outer one counter-clockwise;
+    at_mm : its centroid (x, y, z);  island : no material at all lies under it.
+    """
+
+    z_mm: float
+    outline_mm: tuple[Float, ...]
+    area_mm2: float
+    at_mm: tuple[float, float, float]
+    island: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Unsupported:
+    """All that a slicer would support, from the bed upward."""
+
+    patches: tuple[Flagged, ...]
+
+    @property
+    def area_mm2(self) -> float:
+        """Area of the patches that are no islands, layer by layer."""
+        return float(sum(patch.area_mm2 for patch in self.patches if not patch.island))
+
+    @property
+    def islands(self) -> int:
+        return sum(patch.island for patch in self.patches)
+
+    @property
+    def worst(self) -> Flagged | None:
+        """The largest island, or where there is none the largest patch."""
+        return max(self.patches, key=lambda patch: (patch.island, patch.area_mm2), default=None)
+
+
+def unsupported_ceilings(cavity: Manifold, rule: Acceptance, phase: float = 0.0) -> Unsupported:
+    """What the ceilings of a cavity, and pieces that begin inside it, would need as support.
+
+    Parameters
+    ----------
+    cavity : the void, in printing position; material all around it thicker than ``rule.off_mm``.
+    phase : layers are cut this share of a layer higher: another first layer, a raft.
+    """
+    patches: list[Flagged] = []
+    below: CrossSection | None = None
+    for middle, bottom in _layers(cavity, rule, phase):
+        here = cavity.slice(middle).simplify(SIMPLIFY_MM)
+        if below is not None and not below.is_empty():
+            patches.extend(_ceilings(here, below, bottom, rule))
+        below = here
+    return Unsupported(tuple(patches))
+
+
+def unsupported_overhangs(part: Manifold, rule: Acceptance, phase: float = 0.0) -> Unsupported:
+    """What a whole part would need as support, inside and outside, above its first layer.
+
+    The rule word by word, on material; :func:`unsupported_ceilings` is the quick form for voids.
+    """
+    patches: list[Flagged] = []
+    below: CrossSection | None = None
+    for middle, bottom in _layers(part, rule, phase):
+        here = closed(part.slice(middle).simplify(SIMPLIFY_MM), rule.closing_mm)
+        if below is not None:
+            left = here - grown(below, rule.off_mm)
+            islands = [piece for piece in here.decompose() if (piece ^ below).is_empty()]
+            for island in islands:
+                left = left - island
+            patches.extend(_flagged(left, bottom, island=False))
+            for island in islands:
+                patches.extend(_flagged(island, bottom, island=True))
+        below = here
+    return Unsupported(tuple(patches))
+
+
+def _layers(body: Manifold, rule: Acceptance, phase: float) -> Iterator[tuple[float, float]]:
+    """(middle, underside) of the layers from the first that cuts the body to one above it."""
+    if body.is_empty():
+        return
+    box = body.bounding_box()
+    first, height = rule.first_layer_mm, rule.layer_mm
+    low = max(0, int(np.floor((box[2] - first) / height - phase)))
+    high = int(np.ceil((box[5] - first) / height - phase)) + 1
+    if box[2] < first * (1 + phase):
+        yield first / 2 + phase * height, phase * height
+    for layer in range(low, high + 1):
+        bottom = first + (layer + phase) * height
+        yield bottom + height / 2, bottom
+
+
+def _ceilings(
+    here: CrossSection, below: CrossSection, z_mm: float, rule: Acceptance
+) -> Iterator[Flagged]:
+    """Patches of the layer whose void is ``here``, over a layer whose void is ``below``."""
+    suspect = grown(below, -rule.off_mm) - grown(here, -rule.closing_mm)
+    islands = new_pieces(here, below)
+    if suspect.area() < LEAST_AREA_MM2 and not islands:
+        return
+    window = windows([*suspect.to_polygons(), *islands], AROUND_MM)
+    here, below = (closed(void ^ window, -rule.closing_mm) for void in (here, below))
+    left = (grown(below, -rule.off_mm) - here) ^ suspect
+    pieces = regions(new_pieces(here, below)) if islands else regions([])
+    yield from _flagged(left - pieces, z_mm, island=False)
+    yield from _flagged(pieces, z_mm, island=True)
+
+
+def _flagged(region: CrossSection, z_mm: float, *, island: bool) -> Iterator[Flagged]:
+    for piece in region.decompose():
+        outlines = piece.to_polygons()
+        area, (x, y) = centroid(outlines)
+        if area >= LEAST_AREA_MM2:
+            yield Flagged(z_mm, tuple(outlines), area, (x, y, z_mm), island)
