@@ -12,7 +12,7 @@ from printprep.progress import SILENT, Progress
 if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
-    from printprep.types import Finding
+    from printprep.types import Finding, Lean
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ def examine(
     scale: float | None = None,
     height_mm: float | None = None,
     size_mm: float | None = None,
-    lean_deg: float | None = None,
+    lean: float | str | Lean | None = None,
     progress: Progress = SILENT,
 ) -> Examined:
     """Run the rules on a file, placed as ``hollow`` would place it but otherwise as it came.
@@ -46,17 +46,15 @@ def examine(
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
     from printprep.check import run_rules, subject_of_solid
-    from printprep.errors import UsageError
     from printprep.mesh.place import place
     from printprep.mesh.read import read_mesh
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
+    from printprep.stand.lean import lean_of
     from printprep.stand.stability import stability
 
     settings = load_profile(profile, overrides or {})
-    lean = settings.stability.lean_deg if lean_deg is None else lean_deg
-    if not 0 <= lean <= 60:
-        raise UsageError(f"A lean of {lean:g}° is not between 0° and 60°.")
+    asked = lean_of(lean, settings.stability.lean_deg)
     with progress.stage("read"):
         raw = read_mesh(Path(model), units)
         placed = place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
@@ -64,6 +62,6 @@ def examine(
         solid = repair(placed)
     with progress.stage("check"):
         standing = stability(solid.manifold, settings.printer.first_layer_mm)
-        subject = subject_of_solid(solid.manifold, standing, lean, solid.repair)
+        subject = subject_of_solid(solid.manifold, standing, asked, solid.repair)
         findings = run_rules(subject, settings)
     return Examined(subject, findings, settings)

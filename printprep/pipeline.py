@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from printprep.progress import SILENT, Progress
 from printprep.stopwatch import Stopwatch
-from printprep.types import HollowResult
+from printprep.types import HollowResult, Lean
 
 if TYPE_CHECKING:
     import trimesh
@@ -31,7 +31,7 @@ def hollow(
     height_mm: float | None = None,
     size_mm: float | None = None,
     resolution: int = 64,
-    lean_deg: float | None = None,
+    lean: float | str | Lean | None = None,
     objective: Objective = "lean",
     base: BasePolicy = "auto",
     progress: Progress = SILENT,
@@ -45,7 +45,8 @@ def hollow(
     units : of the file: mm, cm, m, in;  up : the file's axis that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
     resolution : voxels along the longest side for the optimization.
-    lean_deg : the lean at which the part must stand; None takes the profile's.
+    lean : degrees at which the part must stand, or "15@90" for 15° toward the azimuth of 90°;
+        None takes the profile's.
     objective : "lean", the linear program, or "paper", DensiCrafter's objective solved as a plane.
     base : whether material may be added around the feet.
 
@@ -59,12 +60,13 @@ def hollow(
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper
+    from printprep.stand.lean import lean_of
     from printprep.stand.stability import stability
     from printprep.voxel.domain import build_interior
 
     settings = load_profile(profile, overrides or {})
-    lean = settings.stability.lean_deg if lean_deg is None else lean_deg
-    _check_numbers(resolution, lean)
+    asked = lean_of(lean, settings.stability.lean_deg)
+    _check_resolution(resolution)
     clock = Stopwatch(progress)
     with clock.stage("read"):
         placed = _read(model, units, up, scale, height_mm, size_mm)
@@ -80,12 +82,12 @@ def hollow(
         )
     with clock.stage("base"):
         program = Program(solid.manifold, interior, settings)
-        choice = program.choose(base, lean)
+        choice = program.choose(base, asked)
     with clock.stage("cavity"):
         room = cavity_surface(solid.manifold, interior.field, settings.wall_mm)
     with clock.stage("solve"):
         settle = settle_paper if objective == "paper" else settle_lean
-        density, part, standing = settle(solid, room, program, choice, lean)
+        density, part, standing = settle(solid, room, program, choice, asked)
     first_layer = settings.printer.first_layer_mm
     with clock.stage("check"):
         subject = Subject(
@@ -93,7 +95,7 @@ def hollow(
             outside=part.outside,
             cavities=part.cavities,
             stability=standing,
-            lean_deg=lean,
+            lean=asked,
             repair=solid.repair,
             hollowed=True,
             reachable_deg=density.reachable_deg,
@@ -109,7 +111,7 @@ def hollow(
         density=density,
         stability_solid=before,
         stability=standing,
-        lean_deg=lean,
+        lean=asked,
         solid_mass_g=solid.manifold.volume() * grams_per_mm3,
         mass_g=part.manifold.volume() * grams_per_mm3,
         wall_min_mm=None if subject.wall is None else subject.wall.value_mm,
@@ -136,10 +138,8 @@ def _read(
     return place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
 
 
-def _check_numbers(resolution: int, lean_deg: float) -> None:
+def _check_resolution(resolution: int) -> None:
     from printprep.errors import UsageError
 
     if not 8 <= resolution <= 512:
-        raise UsageError(f"a resolution of {resolution} is not between 8 and 512 voxels")
-    if not 0 <= lean_deg <= 60:
-        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
+        raise UsageError(f"A resolution of {resolution} is not between 8 and 512 voxels.")

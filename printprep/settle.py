@@ -12,6 +12,7 @@ import numpy as np
 
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.density.outcome import density_of, paper_density
+from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.density.program import Choice, Program
-    from printprep.types import Base, Density, Part, Plane, Solid, Stability
+    from printprep.types import Base, Density, Lean, Part, Plane, Solid, Stability
 
 # A new solve aims higher by what was lost and this much more.
 SAFETY_DEG = 0.02
@@ -28,7 +29,7 @@ MOST_SOLVES = 6
 
 
 def settle_lean(
-    solid: Solid, room: Manifold, program: Program, choice: Choice, lean_deg: float
+    solid: Solid, room: Manifold, program: Program, choice: Choice, lean: Lean
 ) -> tuple[Density, Part, Stability]:
     """The part of the lightest filling whose final surface stands at the lean.
 
@@ -43,10 +44,11 @@ def settle_lean(
         density = density_of(choice, program)
         part = carve(solid, choice.base, room, program, density.planes)
         standing = stability(part.manifold, program.profile.printer.first_layer_mm)
-        if choice.reached < np.inf or standing.tilt_deg is None or standing.tilt_deg >= lean_deg:
+        tilt_deg = tilt_toward(standing, lean)
+        if choice.reached < np.inf or tilt_deg is None or tilt_deg >= lean.angle_deg:
             break
-        margin += lean_deg - standing.tilt_deg + SAFETY_DEG
-        higher = program.solve(choice.base, lean_deg, margin)
+        margin += lean.angle_deg - tilt_deg + SAFETY_DEG
+        higher = program.solve(choice.base, lean, margin)
         if density_of(higher, program).aim_deg == density.aim_deg:
             break
         choice = higher
@@ -54,7 +56,7 @@ def settle_lean(
 
 
 def settle_paper(
-    solid: Solid, room: Manifold, program: Program, choice: Choice, lean_deg: float
+    solid: Solid, room: Manifold, program: Program, choice: Choice, lean: Lean
 ) -> tuple[Density, Part, Stability]:
     """The part of the paper's objective, on the base that the lean program chose.
 

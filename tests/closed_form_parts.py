@@ -11,7 +11,17 @@ from printprep.check import Subject, as_written, run_rules, subject_of_solid
 from printprep.mesh.measure import arrays
 from printprep.profiles import Profile, load_profile
 from printprep.stand.stability import stability
-from printprep.types import Base, Certificate, Density, HollowResult, Model, Part, Repair, Solid
+from printprep.types import (
+    Base,
+    Certificate,
+    Density,
+    HollowResult,
+    Lean,
+    Model,
+    Part,
+    Repair,
+    Solid,
+)
 
 
 def box(size: float, height: float | None = None, z: float = 0.0) -> Manifold:
@@ -26,7 +36,7 @@ def hollow_box(size: float, wall: float) -> Manifold:
 
 def subject(part: Manifold, **changes: object) -> Subject:
     """A part as a file that came so, with any circumstance changed by name."""
-    plain = subject_of_solid(as_written(part), stability(part, 0.2), 10.0, Repair("as-is"))
+    plain = subject_of_solid(as_written(part), stability(part, 0.2), Lean(10.0), Repair("as-is"))
     return replace(plain, **changes)
 
 
@@ -62,7 +72,7 @@ def hollow_result(
     )
     standing = stability(part.manifold, settings.printer.first_layer_mm)
     examined = Subject(
-        part.manifold, outside, (cavity,), standing, 10.0, Repair("as-is"), hollowed=True
+        part.manifold, outside, (cavity,), standing, Lean(10.0), Repair("as-is"), hollowed=True
     )
     vertices, faces = arrays(solid)
     result = HollowResult(
@@ -79,7 +89,7 @@ def hollow_result(
         ),
         stability_solid=stability(solid, settings.printer.first_layer_mm),
         stability=standing,
-        lean_deg=10.0,
+        lean=Lean(10.0),
         solid_mass_g=solid.volume() * grams,
         mass_g=part.manifold.volume() * grams,
         wall_min_mm=wall,

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
+from printprep.stand.lean import tilt_toward
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -25,10 +26,10 @@ def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
         return
     if reachable > 0:
         message = (
-            f"A lean of {subject.lean_deg:g}° is out of reach: no filling of this model stands "
+            f"A lean of {subject.lean} is out of reach: no filling of this model stands "
             f"beyond {reachable:.1f}°"
         )
-        tilt = subject.stability.tilt_deg
+        tilt = tilt_toward(subject.stability, subject.lean)
         message += "." if tilt is None else f"; this part stands to {tilt:.1f}°."
     else:
         message = "No filling makes it stand: its weight lies outside its feet whatever is inside."
@@ -41,7 +42,7 @@ def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
         f"(--set stability.base_growth_max_mm={max(2 * growth, 3):g}), another pose (--up), "
         "or a smaller --lean.",
         value=reachable,
-        limit=subject.lean_deg,
+        limit=subject.lean.angle_deg,
         unit="deg",
         at_mm=subject.stability.centre_of_mass_mm,
     )

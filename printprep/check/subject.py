@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from printprep.check.walls import Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Repair, Stability
+from printprep.types import Lean, Repair, Stability
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -22,7 +22,7 @@ class Subject:
     outside : what walls are measured to: for a part of ours the model with its base and the voids
     it already had, for a file its outer shells.
     cavities : positive solids, disjoint from the material.
-    stability : how it stands;  lean_deg : the lean it is asked to stand.
+    stability : how it stands;  lean : what it is asked to stand.
     repair : what it took to make a solid of the file.
     hollowed : True for a part of ours, False for a file as it came.
     reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
@@ -32,7 +32,7 @@ class Subject:
     outside: Manifold
     cavities: tuple[Manifold, ...]
     stability: Stability
-    lean_deg: float
+    lean: Lean
     repair: Repair
     hollowed: bool
     reachable_deg: float | None = None
@@ -49,9 +49,7 @@ class Subject:
         return wall_min_mm(self)
 
 
-def subject_of_solid(
-    part: Manifold, stability: Stability, lean_deg: float, repair: Repair
-) -> Subject:
+def subject_of_solid(part: Manifold, stability: Stability, lean: Lean, repair: Repair) -> Subject:
     """Any solid as a subject: its shells of negative volume bound cavities, the rest is outside.
 
     A loose piece inside a cavity is part of neither: it takes room from the cavity it lies in.
@@ -69,7 +67,7 @@ def subject_of_solid(
         outside=united(outer),
         cavities=tuple(rest),
         stability=stability,
-        lean_deg=lean_deg,
+        lean=lean,
         repair=repair,
         hollowed=False,
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
+from printprep.stand.lean import tilt_toward
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -20,8 +21,8 @@ def tilt(subject: Subject, profile: Profile) -> Iterator[Finding]:
     Silent where another rule names the cause: no contact at all, or a lean out of reach.
     """
     del profile
-    tilt_deg = subject.stability.tilt_deg
-    if tilt_deg is None or subject.reachable_deg is not None or tilt_deg >= subject.lean_deg:
+    tilt_deg = tilt_toward(subject.stability, subject.lean)
+    if tilt_deg is None or subject.reachable_deg is not None or tilt_deg >= subject.lean.angle_deg:
         return
     if tilt_deg < 0:
         message = f"It tips over by itself ({tilt_deg:.1f}°); the lean asked for is"
@@ -36,10 +37,10 @@ def tilt(subject: Subject, profile: Profile) -> Iterator[Finding]:
     yield Finding(
         "tilt",
         "error",
-        f"{message} {subject.lean_deg:g}°.",
+        f"{message} {subject.lean}.",
         fix,
         value=tilt_deg,
-        limit=subject.lean_deg,
+        limit=subject.lean.angle_deg,
         unit="deg",
         at_mm=subject.stability.centre_of_mass_mm,
     )

@@ -73,10 +73,10 @@ def profile_options(command: Command) -> Command:
         ),
         click.option(
             "--lean",
-            "lean_deg",
-            type=float,
-            metavar="DEG",
-            help="Lean at which the part must still stand. Default: the profile's.",
+            "lean",
+            metavar="DEG[@AZIMUTH]",
+            help="Lean at which the part must still stand, in every direction, or toward one "
+            "azimuth (15@90; from +x, counter-clockwise). Default: the profile's.",
         ),
     )(command)
 

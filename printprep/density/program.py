@@ -13,7 +13,7 @@ from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
 from printprep.mesh.measure import bodies, mass_properties
 from printprep.stand.contact import contact_of, section_at_bed
-from printprep.types import Base
+from printprep.types import Base, Lean
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -80,7 +80,7 @@ class Program:
         self._pools: dict[tuple[int, ...], tuple[NDArray[np.intp], Fillings]] = {}
         self._feet: Feet | None = None
 
-    def choose(self, policy: BasePolicy, lean_deg: float) -> Choice:
+    def choose(self, policy: BasePolicy, lean: Lean) -> Choice:
         """The base of least total mass that reaches the lean; none on a tie.
 
         When no base reaches it, the one that reaches farthest.
@@ -88,21 +88,21 @@ class Program:
         margin = self.profile.stability.lean_margin_deg
         best: Choice | None = None
         if policy != "always":
-            best = self.solve(None, lean_deg, margin)
+            best = self.solve(None, lean, margin)
             if policy == "never" or self._cannot_be_beaten(best):
                 return best
         for base in self._bases(policy):
             if best is not None and best.reached == np.inf and self._heavier(base, best):
                 break
-            best = _better(best, self.solve(base, lean_deg, margin))
+            best = _better(best, self.solve(base, lean, margin))
         if best is not None and best.base is not None and best.base.growth_mm > 0:
             for growth in self._around(best.base.growth_mm):
                 nearby = base_of(self.feet, growth)
-                best = _better(best, self.solve(nearby, lean_deg, margin))
+                best = _better(best, self.solve(nearby, lean, margin))
         # "always" on a solid whose feet are flat and cannot grow: there is nothing to add.
-        return best if best is not None else self.solve(None, lean_deg, margin)
+        return best if best is not None else self.solve(None, lean, margin)
 
-    def solve(self, base: Base | None, lean_deg: float, margin_deg: float) -> Choice:
+    def solve(self, base: Base | None, lean: Lean, margin_deg: float) -> Choice:
         """The lightest filling of every body for one base."""
         volume, bound = 0.0, 0.0
         parts = []
@@ -114,7 +114,8 @@ class Program:
                 parts.append(BodySolution(cells, voxels, None))
                 volume, bound = volume + fixed[0], bound + fixed[0]
                 continue
-            solution = solve_lean(pool, fixed, contact.footing, lean_deg, margin_deg)
+            footing = contact.footing.toward(lean.azimuth_deg)
+            solution = solve_lean(pool, fixed, footing, lean.angle_deg, margin_deg)
             parts.append(BodySolution(cells, voxels, solution))
             volume += float(solution.filling.moments[0])
             bound += solution.filling.bound

@@ -37,7 +37,7 @@ def test_defaults_are_those_of_the_method(handed, capsys):
     assert handed["model"] == Path("in/model.stl")
     expected = {
         "profile": "fdm-pla-0.4", "overrides": {}, "units": None, "up": "+z", "scale": None,
-        "height_mm": None, "size_mm": None, "resolution": 64, "lean_deg": None,
+        "height_mm": None, "size_mm": None, "resolution": 64, "lean": None,
         "objective": "lean", "base": "auto",
     }  # fmt: skip
     assert {key: handed[key] for key in expected} == expected
@@ -54,7 +54,7 @@ def test_every_option_arrives(handed):
     assert run(line.split()) == 0
     expected = {
         "profile": "fdm-petg-0.4", "units": "in", "up": "-y", "scale": 2.0, "height_mm": 3.0,
-        "size_mm": 4.0, "resolution": 96, "lean_deg": 12.5, "objective": "paper", "base": "never",
+        "size_mm": 4.0, "resolution": 96, "lean": "12.5", "objective": "paper", "base": "never",
         "overrides": {
             "printer.layer_height_mm": "0.15", "material.name": "PC", "wall_mm": 1.6,
         },

@@ -9,6 +9,7 @@ import trimesh
 from manifold3d import Manifold
 from scipy.optimize import brentq
 
+from printprep.errors import UsageError
 from printprep.mesh.measure import arrays, mass_properties
 from printprep.pipeline import hollow
 from printprep.types import HollowResult
@@ -106,9 +107,7 @@ def test_a_leaning_prism_is_filled_up_to_the_exact_plane() -> None:
     prism = solids.leaning_prism(20, 60, 20)
     # The program works in the placed frame: the bounding box centred on x = 0.
     shift = -10.0
-    result = hollowed(
-        prism, base="never", lean_deg=4.0, overrides={"stability.lean_margin_deg": 0.0}
-    )
+    result = hollowed(prism, base="never", lean=4.0, overrides={"stability.lean_margin_deg": 0.0})
     volume, offset = prism_optimum(prism, 4.0)
     plane = result.density.planes[0]
     assert plane is not None
@@ -134,7 +133,7 @@ def test_a_thin_plate_is_written_solid_with_a_finding() -> None:
 
 def test_two_bodies_each_stand_by_themselves() -> None:
     pair = solids.leaning_prism(20, 60, 20) + solids.box(20, 20, 20).translate((60, 0, 0))
-    result = hollowed(pair, base="never", lean_deg=4.0)
+    result = hollowed(pair, base="never", lean=4.0)
     planes = result.density.planes
     assert len(planes) == 2
     assert sum(plane is None for plane in planes) == 1
@@ -152,3 +151,27 @@ def test_the_paper_objective_fills_below_a_plane() -> None:
     assert result.density.certificate is None
     assert result.mass_g < result.solid_mass_g
     assert result.wall_min_mm is None or result.wall_min_mm >= WALL - 0.05
+
+
+def test_a_lean_toward_the_safe_side_needs_no_ballast() -> None:
+    # It leans to +x; toward −x it has plenty of room, and only has to stand upright besides.
+    prism = solids.leaning_prism(20, 60, 16)
+    every = hollowed(prism, base="never", lean=5.0)
+    back = hollowed(prism, base="never", lean="5@180")
+    ahead = hollowed(prism, base="never", lean="5@0")
+    assert back.mass_g < every.mass_g
+    assert back.density.planes == (None,)
+    assert ahead.mass_g == pytest.approx(every.mass_g, rel=1e-3)
+
+
+def test_a_lean_toward_a_corner_is_kinder_than_toward_a_side() -> None:
+    box = solids.box(10, 10, 100)
+    # atan(5 / 50) = 5.7° toward a side, atan(5 √2 / 50) = 8.05° toward a corner.
+    assert hollowed(box, base="never", lean="8@45").density.reachable_deg is None
+    assert hollowed(box, base="never", lean=8.0).stability.tilt_deg < 45.0  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("asked", ["ten", "10@", "@90", "61", "-1", "nan"])
+def test_a_lean_that_cannot_be_meant_is_refused(asked: str) -> None:
+    with pytest.raises(UsageError, match="lean"):
+        hollowed(solids.box(10, 10, 10), lean=asked)
