@@ -96,6 +96,22 @@ class Finding:
     at_mm: tuple[float, float, float] | None = None
 
 
+@dataclass(frozen=True)
+class Lean:
+    """A lean the part must stand: by an angle, in every direction or toward one azimuth.
+
+    azimuth_deg : from +x counter-clockwise, None for every direction.
+    """
+
+    angle_deg: float
+    azimuth_deg: float | None = None
+
+    def __str__(self) -> str:
+        if self.azimuth_deg is None:
+            return f"{self.angle_deg:g}°"
+        return f"{self.angle_deg:g}° toward {self.azimuth_deg:g}°"
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A regular grid of cell centres.
@@ -267,13 +283,18 @@ class HollowResult:
     density: Density
     stability_solid: Stability
     stability: Stability
-    lean_deg: float
+    lean: Lean
     solid_mass_g: float
     mass_g: float
     wall_min_mm: float | None
     findings: tuple[Finding, ...]
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
+
+    @property
+    def lean_deg(self) -> float:
+        """The angle of the lean asked for."""
+        return self.lean.angle_deg
 
     def write(self, path: Any) -> None:
         """Write the part; the suffix chooses the format (.3mf carries the settings)."""

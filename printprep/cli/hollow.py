@@ -63,6 +63,11 @@ Examples:
     show_default=True,
     help="Whether feet may be seated and their footprint grown; auto: where it saves material.",
 )
+@click.option(
+    "--simulate",
+    is_flag=True,
+    help="Let the part go in a physics engine too, and tilt the bed until it tips.",
+)
 @output_form_options("none")
 def command(
     model: Path,
@@ -70,6 +75,7 @@ def command(
     profile: str,
     settings: tuple[str, ...],
     wall_mm: float | None,
+    simulate: bool,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -98,6 +104,9 @@ def command(
         **options,
     )
     result = _with_findings(result, format_findings(result.profile, target))
+    if simulate:
+        with progress.stage("simulate"):
+            result = _with_simulation(result)
     stopped = _stopped(result, fail_on)
     if not stopped:
         with progress.stage("write"):
@@ -117,6 +126,14 @@ def _with_findings(result: HollowResult, more: tuple[Any, ...]) -> HollowResult:
     from printprep.check.registry import sorted_findings
 
     return replace(result, findings=sorted_findings([*result.findings, *more]))
+
+
+def _with_simulation(result: HollowResult) -> HollowResult:
+    from printprep.check.simulated import disagreements
+    from printprep.stand.trial import trial
+
+    found = trial(result.part.manifold, result.profile.printer.first_layer_mm)
+    return _with_findings(replace(result, simulation=found), tuple(disagreements(found)))
 
 
 def _stopped(result: HollowResult, fail_on: Any) -> bool:

@@ -16,7 +16,6 @@ import numpy as np
 from printprep.mesh.measure import arrays
 from printprep.report.raster import coverage, rasterize
 from printprep.report.shading import along, blur, corner_normals, lit, to_srgb, unit
-from printprep.stand.fall import FRAMES_PER_S
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
@@ -25,9 +24,11 @@ if TYPE_CHECKING:
     from printprep.types import Float, Int
 
 GIF_SIZE, STRIP_SIZE, STRIP_STILLS = 320, 280, 6
+GIF_FRAMES_PER_S, STRIP_FRAMES_PER_S = 12.5, 50.0  # a GIF counts in hundredths of a second
 
 _OVERSAMPLING = 2
-_ELEVATION_DEG, _SWING_DEG = 14.0, 12.0  # of the eye: above the level, and off the side
+_AZIMUTH_DEG, _ELEVATION_DEG = -60.0, 14.0  # of the eye, as the lamps are placed for
+_SWING_DEG = 12.0  # the eye is so far off the side, towards where the bed leans
 _PART = np.array([0.95, 0.33, 0.06])  # linear light: printed orange
 _BED = np.array([0.30, 0.34, 0.40])
 _PAPER = np.array([0.93, 0.94, 0.95])
@@ -49,7 +50,7 @@ def gif_bytes(film: Film, size: int = GIF_SIZE) -> bytes:
     sample = _beside([pictures[at] for at in _spread(len(pictures), STRIP_STILLS)])
     palette = sample.quantize(_COLOURS)
     indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    durations = [round(1000 / FRAMES_PER_S)] * (len(indexed) - 1) + [1200]
+    durations = [round(1000 / film.frames_per_s)] * (len(indexed) - 1) + [1200]
     out = BytesIO()
     indexed[0].save(
         out, "GIF", save_all=True, append_images=indexed[1:], duration=durations, loop=0
@@ -76,7 +77,7 @@ class _Stage:
     bed: Float
     bed_faces: Int
     pivot: Float
-    axis: Float
+    azimuth_deg: float
     right: Float
     up: Float
     eye: Float
@@ -89,19 +90,15 @@ def _stage(film: Film, size: int) -> _Stage:
     x0, y0, z0, x1, y1, z1 = film.body.bounding_box()
     body = film.body.simplify(max(x1 - x0, y1 - y0, z1 - z0) * _DETAIL)
     vertices, faces = arrays(body)
-    azimuth = np.radians(film.azimuth_deg)
-    toward = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-    right, up, eye = _camera(film.azimuth_deg)
-    everywhere = np.concatenate([_placed(vertices, frame) for frame in film.frames[::2]])
+    right, up, eye = _camera()
+    everywhere = np.concatenate([_placed(vertices, frame) for frame in film.frames[::3]])
     over = everywhere[:, :2]
     middle = np.array([*(over.min(axis=0) + over.max(axis=0)) / 2, 0.0])
     radius = float(np.linalg.norm(over - middle[:2], axis=1).max()) * 1.06
     bed, bed_faces = _slab(middle, radius)
-    # The bed turns about its own middle, falling where it leans to.
-    axis = np.array([-toward[1], toward[0], 0.0])
     seen = []
-    for frame in [*film.frames[::2], film.frames[-1]]:
-        turn = _turn(axis, frame.lean_deg)
+    for frame in [*film.frames[::3], film.frames[-1]]:
+        turn = _leaning(film.azimuth_deg, frame.lean_deg)
         for points in (_placed(vertices, frame), bed):
             world = (points - middle) @ turn.T
             seen.append(np.column_stack([along(world, right), -along(world, up)]))
@@ -118,7 +115,7 @@ def _stage(film: Film, size: int) -> _Stage:
         bed=bed,
         bed_faces=bed_faces,
         pivot=middle,
-        axis=axis,
+        azimuth_deg=film.azimuth_deg,
         right=right,
         up=up,
         eye=eye,
@@ -132,7 +129,7 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
     """One frame, with the bed's lean written in the corner."""
     from PIL import Image, ImageDraw, ImageFont
 
-    turn = _turn(stage.axis, frame.lean_deg)
+    turn = _leaning(stage.azimuth_deg, frame.lean_deg)
     on_bed = _placed(stage.vertices, frame)
     part = (on_bed - stage.pivot) @ turn.T
     bed = (stage.bed - stage.pivot) @ turn.T
@@ -171,13 +168,21 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
     return picture
 
 
-def _camera(azimuth_deg: float) -> tuple[Float, Float, Float]:
-    """Right, up and the way to the eye: the azimuth of the lean goes to the right."""
-    azimuth, elevation = np.radians([azimuth_deg - 90.0 + _SWING_DEG, _ELEVATION_DEG])
+def _camera() -> tuple[Float, Float, Float]:
+    """Right, up and the way to the eye."""
+    azimuth, elevation = np.radians([_AZIMUTH_DEG, _ELEVATION_DEG])
     level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     eye = np.cos(elevation) * level + np.array([0.0, 0.0, np.sin(elevation)])
     right = np.array([-level[1], level[0], 0.0])
     return right, np.cross(eye, right), eye
+
+
+def _leaning(azimuth_deg: float, lean_deg: float) -> Float:
+    """(3, 3) from the level bed to the bed as it leans, to the right of the picture."""
+    azimuth = np.radians(azimuth_deg)
+    lean = _turn(np.array([-np.sin(azimuth), np.cos(azimuth), 0.0]), lean_deg)
+    to_the_right = _AZIMUTH_DEG + 90.0 - _SWING_DEG - azimuth_deg
+    return np.asarray(_turn(np.array([0.0, 0.0, 1.0]), to_the_right) @ lean)
 
 
 def _turn(axis: Float, angle_deg: float) -> Float:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep import __version__
+from printprep.stand.lean import tilt_toward
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
-    from printprep.types import Base, Finding, HollowResult, Repair
+    from printprep.tryout import TriedOut
+    from printprep.types import Base, Finding, HollowResult, Repair, Simulation
 
 
 def to_text(data: dict[str, Any]) -> str:
@@ -39,6 +41,7 @@ def result_json(
         **facts,
         "model": facts["model"] if model is None else model,
         "output": output,
+        "simulation": None if result.simulation is None else _simulation(result.simulation),
         "seconds": {stage: round(value, 3) for stage, value in result.seconds.items()},
     }
 
@@ -62,11 +65,26 @@ def check_json(
         "volume_mm3": number(volume_mm3),
         "mass_g": number(volume_mm3 * profile.material.density_g_cm3 / 1000),
         "tilt_deg": number(subject.stability.tilt_deg),
-        "lean_deg": number(subject.lean_deg),
+        "lean_deg": number(subject.lean.angle_deg),
+        "lean_azimuth_deg": number(subject.lean.azimuth_deg),
         "wall_min_mm": None if wall is None else number(wall.value_mm),
         "cavities": _cavities(subject.cavities),
         "findings": [finding_json(item) for item in findings],
         "repair": _repair(subject.repair),
+    }
+
+
+def simulate_json(found: TriedOut, *, model: str) -> dict[str, Any]:
+    """What ``simulate`` found out about a file."""
+    return {
+        "printprep": __version__,
+        "model": model,
+        "profile": found.profile.name,
+        "tilt_deg": number(found.stability.tilt_deg),
+        "lean_deg": number(found.lean_deg),
+        "simulation": _simulation(found.simulation),
+        "findings": [finding_json(item) for item in found.findings],
+        "repair": _repair(found.solid.repair),
     }
 
 
@@ -101,9 +119,10 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "solid_mass_g": number(result.solid_mass_g),
         "mass_g": number(result.mass_g),
         "mass_ratio": number(result.mass_g / result.solid_mass_g),
-        "tilt_solid_deg": number(result.stability_solid.tilt_deg),
-        "tilt_deg": number(result.stability.tilt_deg),
+        "tilt_solid_deg": number(tilt_toward(result.stability_solid, result.lean)),
+        "tilt_deg": number(tilt_toward(result.stability, result.lean)),
         "lean_deg": number(result.lean_deg),
+        "lean_azimuth_deg": number(result.lean.azimuth_deg),
         "aim_deg": number(result.density.aim_deg),
         "reachable_deg": number(result.density.reachable_deg),
         "wall_min_mm": number(result.wall_min_mm),
@@ -146,6 +165,23 @@ def _cavities(cavities: Sequence[Manifold]) -> dict[str, Any]:
         for cavity in cavities
     ]
     return {"count": len(items), "items": items}
+
+
+def _simulation(simulation: Simulation) -> dict[str, Any]:
+    return {
+        "rotation_deg": round(simulation.settled.rotation_deg, 2),
+        "stands": simulation.settled.stands,
+        "seconds": number(simulation.settled.seconds),
+        "azimuths": [
+            {
+                "azimuth_deg": number(item.azimuth_deg),
+                "computed_deg": number(item.computed_deg),
+                "tips_deg": None if item.tips_deg is None else round(item.tips_deg, 2),
+                "falls_deg": None if item.falls_deg is None else round(item.falls_deg, 2),
+            }
+            for item in simulation.tippings
+        ],
+    }
 
 
 def _repair(repair: Repair) -> dict[str, Any]:

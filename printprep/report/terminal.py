@@ -10,12 +10,15 @@ from rich.table import Table
 from rich.text import Text
 
 from printprep.report.json import base_mass_g
+from printprep.report.simulation import azimuth_table, simulated
+from printprep.stand.lean import tilt_toward
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
+    from printprep.tryout import TriedOut
     from printprep.types import Finding, HollowResult, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
@@ -33,15 +36,18 @@ def show_result(
         "mass",
         f"{_mass(result.solid_mass_g)} → {_mass(result.mass_g)} ({ratio:.0f} % of the solid)",
     )
-    before, after = result.stability_solid.tilt_deg, result.stability.tilt_deg
+    before = tilt_toward(result.stability_solid, result.lean)
+    after = tilt_toward(result.stability, result.lean)
     facts.add_row(
-        "tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean_deg:g}°)"
+        "tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean})"
     )
     if result.wall_min_mm is not None:
         facts.add_row(
             "thinnest wall",
             f"{result.wall_min_mm:.2f} mm (profile {result.profile.wall_mm:g} mm)",
         )
+    if result.simulation is not None:
+        facts.add_row("simulated", simulated(result.simulation))
     facts.add_row("cavities", _cavities(result.part.cavities))
     facts.add_row("base", _base(result))
     proof = _proof(result)
@@ -78,8 +84,8 @@ def show_check(
     facts.add_row("size", " × ".join(f"{side:.4g}" for side in subject.size_mm) + " mm")
     mass_g = subject.part.volume() * profile.material.density_g_cm3 / 1000
     facts.add_row("mass", f"{_mass(mass_g)} in {profile.material.name}")
-    tilt = _lean(subject.stability.tilt_deg)
-    facts.add_row("tips at", f"{tilt} (asked to stand {subject.lean_deg:g}°)")
+    tilt = _lean(tilt_toward(subject.stability, subject.lean))
+    facts.add_row("tips at", f"{tilt} (asked to stand {subject.lean})")
     if subject.wall is not None:
         facts.add_row(
             "thinnest wall", f"{subject.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
@@ -93,6 +99,23 @@ def show_check(
     show_findings(console, findings)
     if not findings:
         console.print("\nNothing to complain of.")
+
+
+def show_simulation(console: Console, found: TriedOut, *, verbose: bool) -> None:
+    """The summary of ``simulate``."""
+    facts = _facts_table()
+    facts.add_row(
+        "tips at", f"{_lean(found.stability.tilt_deg)} (asked to stand {found.lean_deg:g}°)"
+    )
+    facts.add_row("simulated", simulated(found.simulation))
+    if verbose:
+        facts.add_row("contact", f"{found.stability.contact_area_mm2:.4g} mm²")
+    _add_repair(facts, found.solid.repair)
+    console.print(facts)
+    if found.simulation.tippings:
+        console.print()
+        console.print(azimuth_table(found.simulation))
+    show_findings(console, found.findings)
 
 
 def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:

@@ -23,10 +23,11 @@ AZIMUTHS = 8
 # A foot that has come off the bed by so much does not come back; the bed gives way by far less.
 TIPS_ABOVE_DEG = 1.0
 
-# A body past its tipping point falls as exp(t √(g/l)), some fifteen-fold in 0.2 s, so a bed that
-# tilts at a rate r has tilted about 0.4 r further by the time it shows.  A quick sweep brackets
-# the angle, and a slow one from shortly before finds it to about 0.2°.
-_QUICK_DEG_S, _SLOW_DEG_S = 4.0, 0.5
+# A body past its tipping point falls as exp(t √(g/l)), so the bed tilts on for a few of these times
+# before it shows.  Rates are degrees in the time √(l/g), l the radius of gyration, that all sizes
+# be late by the same: a quick sweep brackets the angle, and a slow one from shortly before finds it
+# to about 0.2°.
+_QUICK_DEG, _SLOW_DEG = 0.2, 0.025
 _BACK_DEG = 2.0
 _CONTROL_STEPS = 10
 _CONTROL_S = 0.01
@@ -47,9 +48,8 @@ def tilt_test(
     if weakest.weakest_azimuth_deg is None:
         return ()
     scenes = [scene_of(body, first_layer_mm) for body in each]
-    around = {360.0 * index / azimuths for index in range(azimuths)}
     tippings = []
-    for azimuth in sorted(around | {round(weakest.weakest_azimuth_deg, 6) % 360.0}):
+    for azimuth in _around(azimuths, weakest.weakest_azimuth_deg):
         angles = [directional_tilt_deg(one, azimuth) for one in standing]
         least = min(angle for angle in angles if angle is not None)
         tips, falls = zip(*(tip(scene, azimuth) for scene in scenes), strict=True)
@@ -64,17 +64,19 @@ def tip(scene: Scene, azimuth_deg: float) -> tuple[float | None, float | None]:
     """
     motion = Motion(scene)
     motion.advance(round(_SETTLE_S / _CONTROL_S) * _CONTROL_STEPS)
-    quick = _Sweep(motion, azimuth_deg, _QUICK_DEG_S, 0.0)
+    rate = float(np.sqrt(scene.gravity))
+    quick = _Sweep(motion, azimuth_deg, _QUICK_DEG * rate, 0.0)
+    slowly = _SLOW_DEG * rate
     tips = quick.until(TIPS_ABOVE_DEG)
     falls = quick.until(STANDS_BELOW_DEG)
     if tips is None:
         return None, None
-    slow = quick.again_before(tips)
+    slow = quick.again_before(tips, slowly)
     tips = slow.until(TIPS_ABOVE_DEG)
     if falls is None:
         return tips, None
     if falls - slow.lean_deg > _BACK_DEG:  # something else holds it for a while
-        slow = quick.again_before(falls)
+        slow = quick.again_before(falls, slowly)
     return tips, slow.until(STANDS_BELOW_DEG)
 
 
@@ -103,12 +105,19 @@ class _Sweep:
             self._states.append(self._motion.state())
         return self.lean_deg
 
-    def again_before(self, lean_deg: float) -> _Sweep:
-        """The same, slowly, from shortly before a lean of this sweep, with the state of then."""
+    def again_before(self, lean_deg: float, rate_deg_s: float) -> _Sweep:
+        """The same at another rate, from its state shortly before a lean."""
         back = round((max(lean_deg - _BACK_DEG, 0.0) - self._from_deg) / self._per_control)
         self._motion.resume(self._states[back])
         start = self._from_deg + back * self._per_control
-        return _Sweep(self._motion, self._azimuth_deg, _SLOW_DEG_S, start)
+        return _Sweep(self._motion, self._azimuth_deg, rate_deg_s, start)
+
+
+def _around(azimuths: int, weakest_deg: float) -> list[float]:
+    """Evenly spaced azimuths, the weakest edge's in place of one that is all but the same."""
+    even = [360.0 * index / azimuths for index in range(azimuths)]
+    others = [one for one in even if 1.0 < (one - weakest_deg) % 360.0 < 359.0]
+    return sorted([*others, weakest_deg])
 
 
 def _least(angles: Sequence[float | None]) -> float | None:

@@ -66,7 +66,7 @@ def test_the_embedded_form_holds_no_time_path_or_output():
     data = embedded_json(hollow_result())
     assert not {"seconds", "output"} & set(data)
     assert data["model"] == "block"
-    assert set(data) | {"seconds", "output"} == set(result_json(hollow_result()))
+    assert set(data) | {"seconds", "output", "simulation"} == set(result_json(hollow_result()))
 
 
 def test_overridden_settings_are_told():

@@ -1,0 +1,122 @@
+"""``printprep simulate``: a part in the hands of a physics engine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from printprep.cli.options import (
+    model_argument,
+    output_form_options,
+    overrides,
+    placement_options,
+    profile_options,
+)
+from printprep.errors import OutputError, UsageError
+
+if TYPE_CHECKING:
+    from printprep.progress import Progress
+    from printprep.tryout import TriedOut
+
+_EPILOG = """\b
+Examples:
+  printprep simulate out.3mf
+  printprep simulate out.3mf --lean 15 --gif fall.gif
+  printprep simulate scan.obj --up y --size 120 --strip fall.png --json
+"""
+
+
+@click.command("simulate", short_help="Let a part go, and tilt the bed.", epilog=_EPILOG)
+@model_argument
+@profile_options
+@placement_options
+@click.option(
+    "--gif",
+    type=click.Path(path_type=Path),
+    metavar="OUT.gif",
+    help="Draw the bed tilting toward the weakest edge until the part tips, as a moving picture.",
+)
+@click.option(
+    "--strip",
+    type=click.Path(path_type=Path),
+    metavar="OUT.png",
+    help="The same as six stills side by side.",
+)
+@output_form_options("error")
+def command(
+    model: Path,
+    profile: str,
+    settings: tuple[str, ...],
+    wall_mm: float | None,
+    gif: Path | None,
+    strip: Path | None,
+    fail_on: Any,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **options: Any,
+) -> int:
+    """Simulate how MODEL (STL, OBJ, PLY, 3MF or GLB) stands; the model is not changed.
+
+    It is let go on a level bed for ten seconds; then the bed tilts slowly toward eight azimuths
+    and the weakest edge's, until its foot leaves the bed and it goes over. The angles are set
+    beside the computed ones, and against --lean.
+    """
+    from printprep.check.registry import at_or_above
+    from printprep.cli.console import stdout_console, trouble_to_stderr
+    from printprep.progress import for_terminal
+    from printprep.tryout import try_out
+
+    _check_picture(gif, ".gif")
+    _check_picture(strip, ".png")
+    progress = for_terminal(quiet=quiet)
+    found = try_out(
+        model, profile=profile, overrides=overrides(settings, wall_mm), progress=progress, **options
+    )
+    _draw(found, gif, strip, progress)
+    if as_json:
+        from printprep.report.json import simulate_json, to_text
+
+        click.echo(to_text(simulate_json(found, model=str(model))))
+    elif quiet:
+        trouble_to_stderr(found.findings)
+    else:
+        from printprep.report.terminal import show_simulation
+
+        show_simulation(stdout_console(), found, verbose=verbose)
+    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0
+
+
+def _check_picture(path: Path | None, suffix: str) -> None:
+    """Find out before the long work whether a picture can be written."""
+    if path is None:
+        return
+    if path.suffix.lower() != suffix:
+        raise UsageError(f"{path} is not named {suffix}.", f"--{_OPTION[suffix]} writes {suffix}.")
+    if not path.parent.is_dir():
+        raise OutputError(
+            f"{path} cannot be written: the folder {path.parent} does not exist.",
+            "Make the folder first, or name another one.",
+        )
+
+
+_OPTION = {".gif": "gif", ".png": "strip"}
+
+
+def _draw(found: TriedOut, gif: Path | None, strip: Path | None, progress: Progress) -> None:
+    if gif is None and strip is None:
+        return
+    from printprep.files import write_atomically
+    from printprep.report import animation
+    from printprep.stand.fall import film
+
+    part, first_layer = found.solid.manifold, found.profile.printer.first_layer_mm
+    with progress.stage("draw"):
+        if gif is not None:
+            moving = film(part, first_layer, animation.GIF_FRAMES_PER_S)
+            write_atomically(gif, animation.gif_bytes(moving))
+        if strip is not None:
+            stills = film(part, first_layer, animation.STRIP_FRAMES_PER_S)
+            write_atomically(strip, animation.strip_bytes(stills))

@@ -1,0 +1,45 @@
+"""A simulation, for a person at a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+from printprep.check.simulated import first_to_tip
+from printprep.stand.scene import MOST_LEAN_DEG
+
+if TYPE_CHECKING:
+    from printprep.types import Simulation
+
+
+def simulated(simulation: Simulation) -> str:
+    """One line: whether it stays where it was put, and when it tips."""
+    settled = simulation.settled
+    if not settled.stands:
+        return f"falls: turned by {settled.rotation_deg:.1f}° after {settled.seconds:g} s"
+    first = first_to_tip(simulation)
+    stays = f"stands for {settled.seconds:g} s (turned by {settled.rotation_deg:.1f}°)"
+    if first is None:
+        return stays
+    return f"{stays}; tips at {angle(first.tips_deg)} toward azimuth {first.azimuth_deg:.0f}°"
+
+
+def azimuth_table(simulation: Simulation) -> Table:
+    """Simulated beside computed, a line for each azimuth."""
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    for head in ("leaning toward", "computed", "foot leaves the bed", "goes over"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for item in simulation.tippings:
+        table.add_row(
+            f"{item.azimuth_deg:.0f}°",
+            f"{item.computed_deg:.1f}°",
+            angle(item.tips_deg),
+            angle(item.falls_deg),
+        )
+    return table
+
+
+def angle(lean_deg: float | None) -> str:
+    """A lean, or that there was none up to the largest tried."""
+    return f"over {MOST_LEAN_DEG:g}°" if lean_deg is None else f"{lean_deg:.1f}°"
