@@ -21,7 +21,7 @@ class TriedOut:
     solid: Solid
     stability: Stability
     simulation: Simulation
-    lean_deg: float
+    lean: Lean
     profile: Profile
     findings: tuple[Finding, ...]
 
@@ -68,6 +68,6 @@ def try_out(
     first_layer = settings.printer.first_layer_mm
     with progress.stage("simulate"):
         standing = stability(solid.manifold, first_layer)
-        simulation = trial(solid.manifold, first_layer)
-    findings = sorted_findings(simulation_findings(simulation, asked.angle_deg))
-    return TriedOut(solid, standing, simulation, asked.angle_deg, settings, findings)
+        simulation = trial(solid.manifold, first_layer, asked)
+    findings = sorted_findings(simulation_findings(simulation, asked))
+    return TriedOut(solid, standing, simulation, asked, settings, findings)

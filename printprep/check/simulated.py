@@ -11,13 +11,13 @@ from printprep.stand.scene import MOST_LEAN_DEG
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.types import Simulation, Tipping
+    from printprep.types import Lean, Simulation, Tipping
 
 AGREES_WITHIN_DEG = 1.0
 _FIX = "Give it a larger base, another pose (--up), or hollow it with printprep."
 
 
-def simulation_findings(simulation: Simulation, lean_deg: float) -> Iterator[Finding]:
+def simulation_findings(simulation: Simulation, lean: Lean) -> Iterator[Finding]:
     """Falling by itself, tipping before the lean asked for, and disagreement with the figures."""
     settled = simulation.settled
     if not settled.stands:
@@ -30,16 +30,16 @@ def simulation_findings(simulation: Simulation, lean_deg: float) -> Iterator[Fin
             value=settled.rotation_deg,
             unit="deg",
         )
-    first = first_to_tip(simulation)
-    if settled.stands and first is not None and held_deg(first) < lean_deg:
+    first = first_to_tip(simulation, lean.azimuth_deg)
+    if settled.stands and first is not None and held_deg(first) < lean.angle_deg:
         yield Finding(
             "simulated-tip",
             "error",
             f"In simulation its foot leaves the bed at a lean of {held_deg(first):.1f}° toward "
-            f"azimuth {first.azimuth_deg:.0f}°; the lean asked for is {lean_deg:g}°.",
+            f"azimuth {first.azimuth_deg:.0f}°; the lean asked for is {lean}.",
             _FIX,
             value=held_deg(first),
-            limit=lean_deg,
+            limit=lean.angle_deg,
             unit="deg",
         )
     yield from disagreements(simulation)
@@ -63,9 +63,12 @@ def disagreements(simulation: Simulation) -> Iterator[Finding]:
         )
 
 
-def first_to_tip(simulation: Simulation) -> Tipping | None:
-    """The azimuth toward which it tips first, None when it has no contact."""
-    return min(simulation.tippings, key=held_deg, default=None)
+def first_to_tip(simulation: Simulation, toward_deg: float | None = None) -> Tipping | None:
+    """The azimuth toward which it tips first, or the one that is named; None without contact."""
+    asked = (
+        item for item in simulation.tippings if toward_deg is None or item.azimuth_deg == toward_deg
+    )
+    return min(asked, key=held_deg, default=None)
 
 
 def held_deg(tipping: Tipping) -> float:

@@ -132,7 +132,7 @@ def _with_simulation(result: HollowResult) -> HollowResult:
     from printprep.check.simulated import disagreements
     from printprep.stand.trial import trial
 
-    found = trial(result.part.manifold, result.profile.printer.first_layer_mm)
+    found = trial(result.part.manifold, result.profile.printer.first_layer_mm, result.lean)
     return _with_findings(replace(result, simulation=found), tuple(disagreements(found)))
 
 

@@ -60,9 +60,9 @@ def command(
 ) -> int:
     """Simulate how MODEL (STL, OBJ, PLY, 3MF or GLB) stands; the model is not changed.
 
-    It is let go on a level bed for ten seconds; then the bed tilts slowly toward eight azimuths
-    and the weakest edge's, until its foot leaves the bed and it goes over. The angles are set
-    beside the computed ones, and against --lean.
+    It is let go on a level bed for ten seconds; then the bed tilts slowly toward eight azimuths,
+    the weakest edge's and the one that --lean names, until its foot leaves the bed and it goes
+    over. The angles are set beside the computed ones, and against --lean.
     """
     from printprep.check.registry import at_or_above
     from printprep.cli.console import stdout_console, trouble_to_stderr

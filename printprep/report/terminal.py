@@ -38,9 +38,7 @@ def show_result(
     )
     before = tilt_toward(result.stability_solid, result.lean)
     after = tilt_toward(result.stability, result.lean)
-    facts.add_row(
-        "tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean})"
-    )
+    facts.add_row("tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean})")
     if result.wall_min_mm is not None:
         facts.add_row(
             "thinnest wall",
@@ -105,7 +103,8 @@ def show_simulation(console: Console, found: TriedOut, *, verbose: bool) -> None
     """The summary of ``simulate``."""
     facts = _facts_table()
     facts.add_row(
-        "tips at", f"{_lean(found.stability.tilt_deg)} (asked to stand {found.lean_deg:g}°)"
+        "tips at",
+        f"{_lean(tilt_toward(found.stability, found.lean))} (asked to stand {found.lean})",
     )
     facts.add_row("simulated", simulated(found.simulation))
     if verbose:

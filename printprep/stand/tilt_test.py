@@ -35,12 +35,17 @@ _SETTLE_S = 0.5
 
 
 def tilt_test(
-    part: Manifold, first_layer_mm: float, *, azimuths: int = AZIMUTHS
+    part: Manifold,
+    first_layer_mm: float,
+    *,
+    azimuths: int = AZIMUTHS,
+    toward_deg: float | None = None,
 ) -> tuple[Tipping, ...]:
     """The leans at which a part tips, simulated beside computed.
 
-    Toward ``azimuths`` directions evenly around from +x, and toward the weakest edge's.  Of
-    several bodies the first to tip counts.  Empty when a body has no contact with the bed.
+    Toward ``azimuths`` directions evenly around from +x, the weakest edge's, and ``toward_deg``
+    when it is given.  Of several bodies the first to tip counts.  Empty when a body has no contact
+    with the bed.
     """
     each = bodies(part)
     standing = [stability(body, first_layer_mm) for body in each]
@@ -49,7 +54,8 @@ def tilt_test(
         return ()
     scenes = [scene_of(body, first_layer_mm) for body in each]
     tippings = []
-    for azimuth in _around(azimuths, weakest.weakest_azimuth_deg):
+    named = [weakest.weakest_azimuth_deg, *([] if toward_deg is None else [toward_deg])]
+    for azimuth in _around(azimuths, named):
         angles = [directional_tilt_deg(one, azimuth) for one in standing]
         least = min(angle for angle in angles if angle is not None)
         tips, falls = zip(*(tip(scene, azimuth) for scene in scenes), strict=True)
@@ -113,11 +119,11 @@ class _Sweep:
         return _Sweep(self._motion, self._azimuth_deg, rate_deg_s, start)
 
 
-def _around(azimuths: int, weakest_deg: float) -> list[float]:
-    """Evenly spaced azimuths, the weakest edge's in place of one that is all but the same."""
+def _around(azimuths: int, named: Sequence[float]) -> list[float]:
+    """Evenly spaced azimuths and those named, in place of any that is all but the same."""
     even = [360.0 * index / azimuths for index in range(azimuths)]
-    others = [one for one in even if 1.0 < (one - weakest_deg) % 360.0 < 359.0]
-    return sorted([*others, weakest_deg])
+    others = [one for one in even if all(1.0 < (one - name) % 360.0 < 359.0 for name in named)]
+    return sorted({*others, *named})
 
 
 def _least(angles: Sequence[float | None]) -> float | None:

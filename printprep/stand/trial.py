@@ -11,7 +11,15 @@ from printprep.types import Simulation
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.types import Lean
 
-def trial(part: Manifold, first_layer_mm: float) -> Simulation:
-    """Let a part go on the level bed, and tilt the bed until it tips; some seconds of work."""
-    return Simulation(simulate(part, first_layer_mm), tilt_test(part, first_layer_mm))
+
+def trial(part: Manifold, first_layer_mm: float, lean: Lean) -> Simulation:
+    """Let a part go on the level bed, and tilt the bed until it tips; some seconds of work.
+
+    The bed tilts toward eight azimuths, the weakest edge's, and the lean's where it names one.
+    """
+    return Simulation(
+        simulate(part, first_layer_mm),
+        tilt_test(part, first_layer_mm, toward_deg=lean.azimuth_deg),
+    )

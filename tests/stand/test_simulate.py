@@ -17,9 +17,10 @@ from printprep.stand.simulate import simulate
 from printprep.stand.stability import stability
 from printprep.stand.tilt_test import tilt_test, tip
 from printprep.stand.trial import trial
-from printprep.types import Settled, Simulation, Tipping
+from printprep.types import Lean, Settled, Simulation, Tipping
 
 FIRST_LAYER = 0.2
+TEN = Lean(10.0)
 
 
 def degrees(opposite: float, adjacent: float) -> float:
@@ -90,11 +91,11 @@ def test_what_stands_does_not_stir() -> None:
 
 def test_what_leans_too_far_falls_by_itself() -> None:
     prism = solids.leaning_prism(20, 60, 50)
-    found = trial(prism, FIRST_LAYER)
+    found = trial(prism, FIRST_LAYER, TEN)
     assert not found.settled.stands
     assert found.settled.rotation_deg > 45
     assert all(item.tips_deg == item.falls_deg == 0 > item.computed_deg for item in found.tippings)
-    assert [item.rule for item in simulation_findings(found, 10)] == ["simulated-fall"]
+    assert [item.rule for item in simulation_findings(found, TEN)] == ["simulated-fall"]
 
 
 def test_the_first_of_several_bodies_counts() -> None:
@@ -122,7 +123,7 @@ def test_a_foot_that_comes_down_on_something_else_tips_but_does_not_go_over() ->
 
 def test_contact_with_nothing_is_not_standing_even_when_it_balances() -> None:
     needle = Manifold.cylinder(30, 0, 10, 64)
-    found = trial(needle, FIRST_LAYER)
+    found = trial(needle, FIRST_LAYER, TEN)
     assert not found.settled.stands
     assert found.tippings == ()
 
@@ -137,11 +138,11 @@ def test_a_flat_thing_outlasts_the_test() -> None:
 
 @cache
 def leaning_trial() -> Simulation:
-    return trial(solids.leaning_prism(20, 60, 10), FIRST_LAYER)
+    return trial(solids.leaning_prism(20, 60, 10), FIRST_LAYER, TEN)
 
 
 def test_the_same_every_time() -> None:
-    assert trial(solids.leaning_prism(20, 60, 10), FIRST_LAYER) == leaning_trial()
+    assert trial(solids.leaning_prism(20, 60, 10), FIRST_LAYER, TEN) == leaning_trial()
 
 
 def test_azimuths_are_even_and_the_weakest_edge_is_among_them() -> None:
@@ -156,6 +157,19 @@ def test_azimuths_are_even_and_the_weakest_edge_is_among_them() -> None:
     assert weakest.azimuth_deg == pytest.approx(20, abs=1e-6)
     assert weakest.tips_deg == pytest.approx(min(i.tips_deg for i in leaning_trial().tippings),
                                              abs=0.02)  # fmt: skip
+
+
+def test_a_lean_toward_one_azimuth_is_judged_there_alone() -> None:
+    prism = solids.leaning_prism(20, 60, 10)  # 9.5° onward, 26.5° back
+    for lean, rules in (
+        (Lean(15.0), ["simulated-tip"]),
+        (Lean(15.0, 170.0), []),
+        (Lean(28.0, 170.0), ["simulated-tip"]),
+    ):
+        found = trial(prism, FIRST_LAYER, lean)
+        azimuths = [item.azimuth_deg for item in found.tippings]
+        assert lean.azimuth_deg is None or lean.azimuth_deg in azimuths
+        assert [item.rule for item in simulation_findings(found, lean)] == rules
 
 
 def test_every_size_is_the_same_scene_but_for_its_gravity() -> None:
@@ -190,7 +204,7 @@ def test_findings_say_what_a_simulation_found() -> None:
     def rules(tips: float | None, computed: float, lean: float) -> list[str]:
         tipping = Tipping(90.0, computed, tips, tips)
         simulation = Simulation(Settled(0.0, True, 10.0), (tipping,))
-        return [item.rule for item in simulation_findings(simulation, lean)]
+        return [item.rule for item in simulation_findings(simulation, Lean(lean))]
 
     assert rules(10.2, 10.0, 10.0) == []
     assert rules(9.8, 10.0, 10.0) == ["simulated-tip"]
@@ -207,7 +221,7 @@ def test_a_hollowed_figure_stands_at_the_lean(dev_models, name: str) -> None:
 
     model = dev_models[name]
     result = hollow(model.path, up=model.up, size_mm=60)
-    found = trial(result.part.manifold, result.profile.printer.first_layer_mm)
+    found = trial(result.part.manifold, result.profile.printer.first_layer_mm, result.lean)
     assert found.settled.stands
     assert found.settled.rotation_deg < 0.01
     assert min(item.tips_deg for item in found.tippings) >= result.lean_deg
