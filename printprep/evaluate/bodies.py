@@ -1,0 +1,100 @@
+"""What each method makes of a model's voxels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.density.paper_domain import PaperDomain, build_domain
+from printprep.evaluate.balance import tilt_deg
+from printprep.evaluate.leanest import Leanest, footprints, leanest
+from printprep.evaluate.methods import Method
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.types import Float
+
+# The lean that is matched is met from below by this, so that rounding does not put it out of reach.
+_HAIR_DEG = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A method's result.
+
+    weight : (N, N, N) density of what is built; 0 or 1 but for a few voxels on a lean's plane.
+    solid : (N, N, N) bool, O;  outside : the same and what of B is built, so without the cavity.
+    ground : index of the layer on the bed.
+    lean_deg : the lean asked for, None for a method without one.
+    reachable_deg : the largest lean there is, where it is less than that.
+    """
+
+    weight: Float
+    solid: NDArray[np.bool_]
+    outside: NDArray[np.bool_]
+    ground: int
+    lean_deg: float | None = None
+    reachable_deg: float | None = None
+
+
+def body_of(occupied: NDArray[np.bool_], method: Method) -> Body:
+    """Run a method on an occupancy (N, N, N) bool.
+
+    What the paper's objective builds is V = {ρ̃ > 0.5}, so V is what is weighed and judged.  A lean
+    program's plane can pass through a few voxels; they weigh what lies below it.
+
+    Raises GeometryError when nothing is occupied.
+    """
+    domain = build_domain(occupied, method.settings, shell="boundary")
+    if method.kind == "solid":
+        return _body(domain, domain.solid.astype(np.float64))
+    if method.kind == "shell":
+        return _body(domain, domain.shell.astype(np.float64))
+    if method.kind == "paper":
+        return _body(domain, _paper(domain, method))
+    if method.kind == "lean":
+        found = leanest(domain, method.lean_deg, footprints(domain))
+        return _leaned(domain, found, method.lean_deg)
+    return _at_paper_tilt(domain, method)
+
+
+def _at_paper_tilt(domain: PaperDomain, method: Method) -> Body:
+    """The lightest that stands at the lean at which the paper's result tips over.
+
+    Its footprint is among those tried, so the paper's result is one of the fillings, and none
+    lighter is missed: never heavier.  Where the paper's result falls by itself the angle is
+    negative; what is matched then is how far its centre lies beyond the edge, for its height.
+    """
+    paper = _paper(domain, method)
+    lean = tilt_deg(paper, domain.ground) - _HAIR_DEG
+    its_own = (paper[:, :, domain.ground] > 0) & domain.base[:, :, domain.ground]
+    found = leanest(domain, lean, [*footprints(domain), its_own])
+    return _leaned(domain, found, lean)
+
+
+def _paper(domain: PaperDomain, method: Method) -> Float:
+    """V of the paper's objective, as densities 0 and 1."""
+    if method.solver == "adam":
+        from printprep.density.adam import solve_adam
+
+        return solve_adam(domain, method.settings).material.astype(np.float64)
+    from printprep.density.plane import solve_plane
+
+    return solve_plane(domain, method.settings).material.astype(np.float64)
+
+
+def _leaned(domain: PaperDomain, found: Leanest, lean_deg: float) -> Body:
+    return _body(domain, found.weight, lean_deg, found.reachable_deg)
+
+
+def _body(
+    domain: PaperDomain,
+    weight: Float,
+    lean_deg: float | None = None,
+    reachable_deg: float | None = None,
+) -> Body:
+    outside = domain.solid | (weight > 0)
+    return Body(weight, domain.solid, outside, domain.ground, lean_deg, reachable_deg)

@@ -1,0 +1,75 @@
+"""A model in the paper's picture: scaled into the unit cube, and its voxels.
+
+The frame is the generator's: the bounding box is centred on the origin and its longest side is 1,
+so the object lies in [-0.5, 0.5]³ with z up; voxel (i, j, k) of N³ is centred at
+(index + 0.5) / N − 0.5.  Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import GeometryError
+from printprep.mesh.columns import winding_in_columns
+from printprep.mesh.measure import signed_volumes
+from printprep.mesh.place import place
+from printprep.mesh.read import read_mesh
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.types import Float, Int
+
+# Columns must not meet an edge or a corner; these have no small common measure with any grid.
+_JITTER = np.array([2.0**0.5, 3.0**0.5]) * 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What there is to hollow, and what to compare with.
+
+    vertices : (v, 3) float64 in [-0.5, 0.5]³;  faces : (f, 3) int64, seen from outside.
+    occupied : (N, N, N) bool, axis order x, y, z: the voxels whose centres lie inside.
+    """
+
+    vertices: Float
+    faces: Int
+    occupied: NDArray[np.bool_]
+
+
+def picture_of(path: Path, up: str, resolution: int) -> Picture:
+    """Read, scale and voxelize a model.
+
+    Raises
+    ------
+    InputError : as ``read_mesh``.
+    GeometryError : the model encloses no voxel's centre.
+    """
+    placed = place(read_mesh(path), up=up, size_mm=1.0)
+    vertices = placed.vertices - [0.0, 0.0, placed.vertices[:, 2].max() / 2]
+    faces = placed.faces
+    if signed_volumes(vertices[faces]).sum() < 0:  # inside out as a whole
+        faces = faces[:, ::-1]
+    occupied = voxelized(vertices, faces, resolution)
+    if not occupied.any():
+        raise GeometryError(
+            f"{path} encloses none of the {resolution}³ voxel centres.",
+            "It is flat, thinner than a voxel, or not closed.",
+        )
+    return Picture(vertices, faces, occupied)
+
+
+def voxelized(vertices: Float, faces: Int, resolution: int) -> NDArray[np.bool_]:
+    """(N, N, N) bool: voxels of [-0.5, 0.5]³ about whose centre the winding number exceeds ½."""
+    centres = (np.arange(resolution) + 0.5) / resolution - 0.5
+    x, y = np.meshgrid(centres, centres, indexing="ij")
+    columns = np.column_stack([x.ravel(), y.ravel()]) + _JITTER
+    column_of = np.repeat(np.arange(len(columns)), resolution)
+    winding = winding_in_columns(
+        vertices, faces, columns, column_of, np.tile(centres, len(columns))
+    )
+    return (winding > 0.5).reshape(resolution, resolution, resolution)
