@@ -1,0 +1,1 @@
+"""G-code of printers that melt filament: read, weighed, balanced."""

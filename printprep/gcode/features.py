@@ -1,0 +1,70 @@
+"""What a stretch of G-code prints, under one name for every slicer's own.
+
+Names are those of PrusaSlicer (libslic3r's ExtrusionRole), in lower case.  SuperSlicer adds a few;
+OrcaSlicer and BambuStudio name them anew (`;TYPE:` or `; FEATURE:`); Cura writes capitals.
+"""
+
+from __future__ import annotations
+
+CUSTOM = "custom"
+UNLABELLED = "unlabelled"
+OTHER = "other"
+SUPPORT = frozenset({"support material", "support material interface"})
+
+# What is thrown away after printing, or never was part of the model
+LEFT_OUT = SUPPORT | {"skirt", "brim", "wipe tower", CUSTOM}
+
+_NAMES = {
+    # PrusaSlicer; since 2.6 brim has a role of its own
+    "perimeter": "perimeter",
+    "external perimeter": "external perimeter",
+    "overhang perimeter": "overhang perimeter",
+    "internal infill": "internal infill",
+    "solid infill": "solid infill",
+    "top solid infill": "top solid infill",
+    "bridge infill": "bridge infill",
+    "ironing": "ironing",
+    "gap fill": "gap fill",
+    "skirt": "skirt",
+    "brim": "brim",
+    "skirt/brim": "skirt",
+    "support material": "support material",
+    "support material interface": "support material interface",
+    "wipe tower": "wipe tower",
+    "custom": CUSTOM,
+    # SuperSlicer
+    "internal perimeter": "perimeter",
+    "internal bridge infill": "bridge infill",
+    "thin wall": "external perimeter",
+    "mixed": OTHER,
+    "milling": CUSTOM,
+    # OrcaSlicer, BambuStudio
+    "inner wall": "perimeter",
+    "outer wall": "external perimeter",
+    "overhang wall": "overhang perimeter",
+    "sparse infill": "internal infill",
+    "internal solid infill": "solid infill",
+    "top surface": "top solid infill",
+    "bottom surface": "solid infill",
+    "bridge": "bridge infill",
+    "internal bridge": "bridge infill",
+    "gap infill": "gap fill",
+    "support": "support material",
+    "support interface": "support material interface",
+    "support transition": "support material",
+    "prime tower": "wipe tower",
+    "multiple": OTHER,
+    "undefined": OTHER,
+    # Cura
+    "wall-outer": "external perimeter",
+    "wall-inner": "perimeter",
+    "skin": "solid infill",
+    "fill": "internal infill",
+    "support-interface": "support material interface",
+    "prime-tower": "wipe tower",
+}
+
+
+def feature_of(label: str) -> str:
+    """The name of what a slicer labels so; an unknown label is part of the model (``other``)."""
+    return _NAMES.get(label.strip().lower(), OTHER)

@@ -1,0 +1,62 @@
+"""The contact a print makes with its bed: the beads of its lowest layer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from manifold3d import CrossSection
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+_TILE = 256  # outlines united at a time: the work grows faster than their number
+SAME_LAYER_MM = 1e-3  # G-code has three decimals
+_ROUND = 16  # corners of the circle that ends a bead: its area is 2.6 % short of round
+
+
+@dataclass
+class LowestBeads:
+    """The beads of one kind on the lowest layer met so far: (n, 7) x, y, x, y, z, width, height."""
+
+    z_mm: float = np.inf
+    _beads: list[Float] = field(default_factory=list)
+
+    def meet(self, beads: Float) -> None:
+        """Take in the beads of a piece of the file; only those on the lowest layer are kept."""
+        lowest = float(beads[:, 4].min())
+        if lowest < self.z_mm - SAME_LAYER_MM:
+            self._beads.clear()
+            self.z_mm = lowest
+        kept = beads[beads[:, 4] <= self.z_mm + SAME_LAYER_MM]
+        if len(kept):
+            self._beads.append(kept)
+
+    @property
+    def beads(self) -> Float:
+        return np.concatenate(self._beads) if self._beads else np.zeros((0, 7))
+
+
+def union_of(beads: Float) -> CrossSection:
+    """What (n, 7) beads cover: each segment buffered by half its width, with round ends."""
+    from manifold3d import CrossSection, FillRule, OpType
+
+    beads = np.unique(beads, axis=0)  # neighbours come together, repeats count once
+    a, b, half = beads[:, :2], beads[:, 2:4], beads[:, 5] / 2
+    along = b - a
+    heading = np.arctan2(along[:, 1], along[:, 0])
+    corners = (np.arange(_ROUND // 2 + 1) / (_ROUND // 2) - 0.5) * np.pi
+    ends = []
+    for centre, turn in ((b, 0.0), (a, np.pi)):
+        angle = heading[:, None] + corners[None, :] + turn
+        circle = half[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=2)
+        ends.append(centre[:, None, :] + circle)
+    outlines = np.concatenate(ends, axis=1)
+    tiles = [
+        CrossSection(list(some), FillRule.NonZero)
+        for some in np.array_split(outlines, max(1, len(outlines) // _TILE))
+    ]
+    return CrossSection.batch_boolean(tiles, OpType.Add)

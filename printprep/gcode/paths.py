@@ -1,0 +1,157 @@
+"""From rows of words to straight stretches of deposited filament, in mm of the machine.
+
+Followed as the firmware follows them: absolute and relative axes (G90, G91) and filament (M82,
+M83; G91 makes the filament relative too, as PrusaSlicer reads it), new origins (G92: the head stays
+where it is), and arcs (G2, G3) by centre or by radius.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.gcode.words import HOME, SET, E, I, J, R, Rows, X, Y, Z
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.gcode.state import State
+
+    Int = NDArray[np.int64]
+    Float = NDArray[np.float64]
+    Bool = NDArray[np.bool_]
+
+_TURN_DEG = 5.0  # an arc becomes chords of at most this turn: sagitta 0.1 % of the radius
+
+
+@dataclass(frozen=True, eq=False)
+class Stretches:
+    """n straight stretches in the order printed.
+
+    start_mm, end_mm : (n, 3) of the nozzle;  filament : (n,) positive, mm or, where volumetric,
+    mm³;  state : (n,) index into the states given.
+    """
+
+    start_mm: Float
+    end_mm: Float
+    filament: Float
+    state: Int
+
+
+class Walker:
+    """Carries the head's position and the filament's from one piece of a file to the next."""
+
+    def __init__(self) -> None:
+        self._at = np.zeros(4)  # x, y, z, e as the file counts them, mm
+        self._origin = np.zeros(3)  # what G92 added up to: machine = file + origin
+
+    def walk(self, rows: Rows, state_of_row: Int, states: Sequence[State]) -> Stretches:
+        """The stretches that a piece deposits.
+
+        state_of_row : (n,) index into ``states`` of what holds at each row.
+        """
+        n = len(rows.kind)
+        if n == 0:
+            nothing = np.zeros((0, 3))
+            return Stretches(nothing, nothing, np.zeros(0), np.zeros(0, dtype=np.int64))
+        words = self._in_mm(rows, state_of_row, states)
+        relative = np.array([state.relative for state in states])[state_of_row]
+        relative_e = np.array([state.relative_e for state in states])[state_of_row] | relative
+        sets = (rows.kind == SET) | (rows.kind == HOME)
+        after = np.empty((n, 4))  # every column is written below
+        for axis, counts in ((X, relative), (Y, relative), (Z, relative), (E, relative_e)):
+            after[:, axis] = _follow(words[:, axis], counts & ~sets, self._at[axis])
+        before = np.vstack([self._at, after[:-1]])
+        origins = self._origins(rows.kind, before, after)
+        self._at = after[-1].copy()
+        start, end = before[:, :3] + origins, after[:, :3] + origins
+        filament = np.where(sets, 0.0, after[:, E] - before[:, E])
+        arc = (rows.kind == 2) | (rows.kind == 3)
+        across = (start[:, :2] != end[:, :2]).any(axis=1) | arc
+        kept = np.flatnonzero((filament > 0) & across)
+        made = Stretches(start[kept], end[kept], filament[kept], state_of_row[kept])
+        return _straightened(made, rows.kind[kept], words[kept]) if arc[kept].any() else made
+
+    def _in_mm(self, rows: Rows, state_of_row: Int, states: Sequence[State]) -> Float:
+        words = rows.words.copy()
+        unit = np.array([state.unit_mm for state in states])[state_of_row]
+        if (unit != 1.0).any():
+            volumetric = np.array([state.volumetric for state in states])[state_of_row]
+            scale = np.repeat(unit[:, None], words.shape[1], axis=1)
+            scale[volumetric, E] = 1.0
+            words *= scale
+        for code, axes in ((SET, [X, Y, Z, E]), (HOME, [X, Y, Z])):
+            bare = (rows.kind == code) & np.isnan(words[:, axes]).all(axis=1)
+            words[np.ix_(bare, axes)] = 0.0
+        return words
+
+    def _origins(self, kind: Int, before: Float, after: Float) -> Float:
+        """(n, 3) or (1, 3): the machine's place of the file's origin, at each row."""
+        moved = np.where((kind == SET)[:, None], before[:, :3] - after[:, :3], 0.0)
+        if not moved.any():
+            return self._origin[None, :]
+        origins: Float = self._origin + np.cumsum(moved, axis=0)
+        self._origin = origins[-1].copy()
+        return origins
+
+
+def _follow(value: Float, relative: Bool, start: float) -> Float:
+    """Where an axis is after each row: set by absolute words, advanced by relative ones."""
+    given = ~np.isnan(value)
+    last = np.maximum.accumulate(np.where(given & ~relative, np.arange(len(value)), -1))
+    after = np.where(last >= 0, value[last], start)
+    if (given & relative).any():
+        way = np.cumsum(np.where(given & relative, value, 0.0))
+        after = after + way - np.where(last >= 0, way[last], 0.0)
+    return after
+
+
+def _straightened(made: Stretches, kind: Int, words: Float) -> Stretches:
+    """The same with each arc as chords, filament spread evenly over its angle."""
+    arc = kind >= 2
+    centre, turn = _arcs(made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc])
+    pieces = np.ones(len(kind), dtype=np.int64)
+    pieces[arc] = np.maximum(1, np.ceil(np.abs(turn) / np.radians(_TURN_DEG))).astype(np.int64)
+    owner = np.repeat(np.arange(len(kind)), pieces)
+    step = np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    ends = []
+    for shift in (0, 1):
+        share = (step + shift) / pieces[owner]
+        point = made.start_mm[owner] + share[:, None] * (made.end_mm - made.start_mm)[owner]
+        of_arc = np.cumsum(arc)[owner] - 1
+        bent = arc[owner]
+        from_centre = (made.start_mm[arc][:, :2] - centre)[of_arc[bent]]
+        angle = turn[of_arc[bent]] * share[bent]
+        cos, sin = np.cos(angle), np.sin(angle)
+        x, y = from_centre.T
+        around = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+        point[bent, :2] = centre[of_arc[bent]] + around
+        ends.append(point)
+    return Stretches(ends[0], ends[1], (made.filament / pieces)[owner], made.state[owner])
+
+
+def _arcs(start: Float, end: Float, clockwise: Bool, words: Float) -> tuple[Float, Float]:
+    """(n, 2) centres and (n,) signed turns in radians, counter-clockwise positive.
+
+    With R, the centre lies on the chord's normal, on the side that makes the turn less than 180°
+    for R > 0 and more for R < 0.  A chord longer than 2 |R| is taken as the diameter.
+    """
+    a, b = start[:, :2], end[:, :2]
+    centre = a + np.nan_to_num(words[:, [I, J]])
+    radius = words[:, R]
+    by_radius = ~np.isnan(radius)
+    if by_radius.any():
+        chord = b - a
+        length = np.linalg.norm(chord, axis=1)
+        rise = np.sqrt(np.maximum(radius**2 - (length / 2) ** 2, 0.0))
+        side = np.where(clockwise, -1.0, 1.0) * np.where(radius < 0, -1.0, 1.0)
+        normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.maximum(length, 1e-12)[:, None]
+        centre = np.where(by_radius[:, None], (a + b) / 2 + (side * rise)[:, None] * normal, centre)
+    u, v = a - centre, b - centre
+    turn = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.einsum("ij,ij->i", u, v))
+    whole = np.linalg.norm(b - a, axis=1) < 1e-6
+    turn = np.where(clockwise, -(-turn % (2 * np.pi)), turn % (2 * np.pi))
+    return centre, np.where(whole, np.where(clockwise, -2 * np.pi, 2 * np.pi), turn)

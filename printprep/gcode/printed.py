@@ -1,0 +1,63 @@
+"""What a G-code prints, as far as mass and balance go."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Said:
+    """What the slicer wrote into the file of itself and its settings; None where it did not.
+
+    producer : name and version;  filament_mm3, filament_g : of all extruders, by its own count;
+    seconds : its estimate of the printing time;  settings : its "key = value" comments.
+    """
+
+    producer: str | None
+    filament_mm3: float | None
+    filament_g: float | None
+    seconds: float | None
+    settings: Mapping[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class Printed:
+    """Measured from the moves; mm of the machine, heights above the underside of the lowest layer.
+
+    mass_g, volume_mm3, centre_of_mass_mm, inertia_g_mm2 : of what stays of the print
+    (``left_out`` names what does not); the inertia, (3, 3), is about the centre of mass.
+    contact_polygon_mm : (k, 2) counter-clockwise hull of the first layer, each bead as wide as the
+    file says;  contact_area_mm2 : of the beads' union.
+    tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself.
+    feature_mass_g, feature_volume_mm3 : by feature, what is left out too.
+    filament_mm3 : all of it but custom G-code: what slicers count as filament used.
+    in_cavities_mm3, support_in_cavities_mm3 : deposited inside the cavities given, and the support
+    among it;  in_cavities_at_mm : a place of the first, or None.
+    assumed : what the file does not say and was taken for granted, one sentence each.
+    """
+
+    mass_g: float
+    volume_mm3: float
+    centre_of_mass_mm: tuple[float, float, float]
+    inertia_g_mm2: Float
+    contact_polygon_mm: Float
+    contact_area_mm2: float
+    tilt_deg: float
+    feature_mass_g: Mapping[str, float]
+    feature_volume_mm3: Mapping[str, float]
+    left_out: tuple[str, ...]
+    filament_mm3: float
+    in_cavities_mm3: float
+    support_in_cavities_mm3: float
+    in_cavities_at_mm: tuple[float, float, float] | None
+    assumed: tuple[str, ...]
+    said: Said

@@ -1,0 +1,248 @@
+"""Adds up what the pieces of a G-code deposit, by feature, extruder and unit of filament.
+
+What is left out, and how much filament weighs, is decided at the end: slicers write the filament's
+figures behind the moves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import InputError
+from printprep.gcode.features import CUSTOM, SUPPORT, UNLABELLED
+from printprep.gcode.first_layer import SAME_LAYER_MM, LowestBeads, union_of
+from printprep.gcode.inside import Cavities
+from printprep.gcode.moments import COLUMNS, inertia_about_centre, moments_of, sums_by
+from printprep.gcode.paths import Stretches, Walker
+from printprep.gcode.printed import Printed
+from printprep.gcode.said import said_of
+from printprep.gcode.state import Listener, State, numbers
+from printprep.gcode.words import read_rows
+from printprep.stand.contact import contact_of
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+    from numpy.typing import NDArray
+
+    Int = NDArray[np.int64]
+    Float = NDArray[np.float64]
+
+_Key = tuple[str, int, bool]  # feature, extruder, volumetric
+
+DIAMETER_MM = 1.75
+DENSITY_G_CM3 = 1.24
+
+
+class Tally:
+    """Sums over the pieces heard so far."""
+
+    def __init__(self, listener: Listener, name: str, cavities: Sequence[Manifold]) -> None:
+        self._listener = listener
+        self._name = name
+        self._cavities = Cavities(cavities) if cavities else None
+        self._walker = Walker()
+        self._heights = _Heights(listener)
+        self._line = 1
+        self._keys: dict[_Key, int] = {}
+        self._sums = np.zeros((0, COLUMNS))
+        self._inside = np.zeros(0)
+        self._lowest: list[LowestBeads] = []
+        self._at: dict[_Key, tuple[float, float, float]] = {}
+
+    def add(self, piece: bytes) -> None:
+        """Take in the next piece, which ends with a line's end."""
+        rows = read_rows(piece, self._name, self._line)
+        self._line += rows.lines
+        states, changed_at, became = self._listener.hear_all(rows.others)
+        changes = np.searchsorted(np.array(changed_at, dtype=np.int64), rows.line)
+        state_of_row = np.array([0, *became], dtype=np.int64)[changes]
+        made = self._walker.walk(rows, state_of_row, states)
+        if len(made.filament):
+            self._deposit(made, states)
+
+    def _deposit(self, made: Stretches, states: Sequence[State]) -> None:
+        group = np.array([self._group(state) for state in states])[made.state]
+        self._make_room()
+        width, height = self._heights.bead(made, states)
+        axis_start, axis_end = made.start_mm.copy(), made.end_mm.copy()
+        axis_start[:, 2] -= height / 2
+        axis_end[:, 2] -= height / 2
+        wide = np.nan_to_num(width)
+        moments = moments_of(axis_start, axis_end, made.filament, wide, height)
+        self._sums += sums_by(group, moments, len(self._sums))
+        top = made.end_mm[:, 2]
+        beads = np.column_stack([made.start_mm[:, :2], made.end_mm[:, :2], top, width, height])
+        # Where no width is said it follows from the filament, whose diameter is known at the end
+        length = np.linalg.norm(beads[:, 2:4] - beads[:, :2], axis=1)
+        unsaid = np.isnan(width)
+        beads[unsaid, 5] = -(made.filament / np.maximum(length, 1e-9))[unsaid]
+        for index in np.unique(group):
+            self._lowest[index].meet(beads[group == index])
+        if self._cavities is not None:
+            deeper = np.where(unsaid, height, wide) / 2
+            share = self._cavities.share_inside(axis_start, axis_end, deeper)
+            self._inside += np.bincount(group, share * made.filament, minlength=len(self._sums))
+            keys = list(self._keys)
+            for index in np.unique(group[share > 0]):
+                first = np.flatnonzero((group == index) & (share > 0))[0]
+                x, y, z = (axis_start[first] + axis_end[first]) / 2
+                self._at.setdefault(keys[index], (float(x), float(y), float(z)))
+
+    def _group(self, state: State) -> int:
+        key = (state.feature, state.tool, state.volumetric)
+        return self._keys.setdefault(key, len(self._keys))
+
+    def _make_room(self) -> None:
+        more = len(self._keys) - len(self._sums)
+        self._sums = np.vstack([self._sums, np.zeros((more, COLUMNS))])
+        self._inside = np.concatenate([self._inside, np.zeros(more)])
+        self._lowest += [LowestBeads() for _ in range(more)]
+
+    def result(
+        self,
+        left_out: Collection[str],
+        diameter_mm: float | None,
+        density_g_cm3: float | None,
+    ) -> Printed:
+        """The whole, once every piece was added.  Raises InputError where nothing is printed."""
+        filament = _Filament(self._listener, diameter_mm, density_g_cm3)
+        keys = [self._feature(key) for key in self._keys]
+        volumes = np.array([filament.mm3(key) for key in keys])
+        grams = np.array([filament.g_cm3(key) for key in keys]) / 1000
+        kept = [i for i, key in enumerate(keys) if key[0] not in left_out and self._sums[i, 0] > 0]
+        if not kept:
+            raise InputError(
+                f"{self._name}: prints nothing that stays",
+                "is it G-code for a printer that melts filament?",
+            )
+        in_mm3 = self._sums * volumes[:, None] if len(keys) else self._sums
+        in_g = in_mm3 * grams[:, None]
+        whole = in_g[kept].sum(axis=0)
+        x, y, z = whole[1:4] / whole[0]
+        beads = self._first_layer(kept, volumes)
+        bottom = float((beads[:, 4] - beads[:, 6]).min())
+        contact = contact_of(union_of(beads))
+        if contact is None:
+            raise InputError(f"{self._name}: its first layer is too small to stand on")
+        centre = (float(x), float(y), float(z) - bottom)
+        ahead = contact.footing.offsets_mm - contact.footing.normals @ np.array(centre[:2])
+        inside = self._inside * volumes
+        support = np.array([key[0] in SUPPORT for key in keys])
+        by_feature = _by_feature(keys, in_g[:, 0])
+        return Printed(
+            mass_g=float(whole[0]),
+            volume_mm3=float(in_mm3[kept, 0].sum()),
+            centre_of_mass_mm=centre,
+            inertia_g_mm2=inertia_about_centre(whole),
+            contact_polygon_mm=contact.polygon_mm,
+            contact_area_mm2=contact.area_mm2,
+            tilt_deg=float(np.degrees(np.arctan2(ahead.min(), centre[2]))),
+            feature_mass_g=by_feature,
+            feature_volume_mm3=_by_feature(keys, in_mm3[:, 0]),
+            left_out=tuple(feature for feature in by_feature if feature in left_out),
+            filament_mm3=float(sum(in_mm3[i, 0] for i, key in enumerate(keys) if key[0] != CUSTOM)),
+            in_cavities_mm3=float(inside.sum()),
+            support_in_cavities_mm3=float(inside[support].sum()),
+            in_cavities_at_mm=next(iter(self._at.values()), None),
+            assumed=filament.assumed,
+            said=said_of(self._listener),
+        )
+
+    def _feature(self, key: _Key) -> _Key:
+        """Before the first label of a file that has labels comes the printer's start G-code."""
+        if key[0] == UNLABELLED and self._listener.labelled:
+            return (CUSTOM, *key[1:])
+        return key
+
+    def _first_layer(self, kept: Sequence[int], volumes: Float) -> Float:
+        lowest = min(self._lowest[i].z_mm for i in kept)
+        layers = []
+        for i in kept:
+            if self._lowest[i].z_mm <= lowest + SAME_LAYER_MM:
+                beads = self._lowest[i].beads.copy()
+                unsaid = beads[:, 5] < 0
+                # As Cura and others count: a bead without a width is a box
+                beads[unsaid, 5] *= -volumes[i] / beads[unsaid, 6]
+                layers.append(beads)
+        return np.concatenate(layers)
+
+
+class _Heights:
+    """Widths and heights of beads; a height nobody says is the layer's."""
+
+    def __init__(self, listener: Listener) -> None:
+        self._listener = listener
+        self._top = 0.0
+        self._height = math.nan
+
+    def bead(self, made: Stretches, states: Sequence[State]) -> tuple[Float, Float]:
+        """(n,) width, NaN where nobody says it, and (n,) height, mm."""
+        width = np.array([state.width_mm for state in states])[made.state]
+        height = np.array([state.height_mm for state in states])[made.state]
+        unsaid = np.isnan(height)
+        if unsaid.any():
+            height[unsaid] = self._by_layer(made.end_mm[unsaid, 2])
+        return width, height
+
+    def _by_layer(self, z: Float) -> Float:
+        """From the step between layers, the first one's from the bed."""
+        starts = np.flatnonzero(np.abs(np.diff(z, prepend=np.nan_to_num(self._top))) > 1e-6)
+        height = np.full(len(z), self._height)
+        nominal = numbers(self._listener.settings, "Layer height")
+        for start in starts.tolist():
+            step = float(z[start]) - self._top
+            self._top = float(z[start])
+            self._height = step if step > 0 else self._top  # lower again: the next object
+            if nominal and not math.isclose(self._top, self._height, abs_tol=1e-6):
+                self._height = min(self._height, nominal[0])
+            height[start:] = self._height
+        return height
+
+
+class _Filament:
+    """What a unit of filament is, in mm³ and grams, by extruder."""
+
+    def __init__(
+        self, listener: Listener, diameter_mm: float | None, density_g_cm3: float | None
+    ) -> None:
+        said = listener.settings
+        self._volumetric = said.get("use_volumetric_e") == "1"
+        assumed = []
+        self._diameters = (diameter_mm,) if diameter_mm else numbers(said, "filament_diameter")
+        if not any(self._diameters):
+            self._diameters = (DIAMETER_MM,)
+            assumed.append(f"Filament of {DIAMETER_MM:g} mm is assumed; the file does not say.")
+        self._densities = (density_g_cm3,) if density_g_cm3 else numbers(said, "filament_density")
+        if not any(self._densities):
+            self._densities = (DENSITY_G_CM3,)
+            assumed.append(
+                f"Filament of {DENSITY_G_CM3:g} g/cm³ is assumed; the file does not say."
+            )
+        self.assumed = tuple(assumed)
+
+    def mm3(self, key: _Key) -> float:
+        """Of one unit of E."""
+        if key[2] or self._volumetric:
+            return 1.0
+        return math.pi / 4 * _of(self._diameters, key[1]) ** 2
+
+    def g_cm3(self, key: _Key) -> float:
+        return _of(self._densities, key[1])
+
+
+def _of(values: Sequence[float], tool: int) -> float:
+    """An extruder's value; where it has none, or 0, the first that is one."""
+    if tool < len(values) and values[tool] > 0:
+        return values[tool]
+    return next(value for value in values if value > 0)
+
+
+def _by_feature(keys: Sequence[_Key], values: Float) -> dict[str, float]:
+    sums: dict[str, float] = {}
+    for key, value in zip(keys, values, strict=True):
+        sums[key[0]] = sums.get(key[0], 0.0) + float(value)
+    return {feature: sums[feature] for feature in sorted(sums) if sums[feature] > 0}

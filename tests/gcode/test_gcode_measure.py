@@ -1,0 +1,317 @@
+"""What a G-code prints, against closed forms; each way of saying the same must measure the same."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gcode_texts import AREA_175, FILAMENT, HEIGHT, WIDTH, beads
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold
+
+from printprep.errors import InputError
+from printprep.gcode import measure as measuring
+from printprep.gcode.measure import measure_gcode
+
+LENGTH, DEPTH, TALL = 20.0, 20.0, 10.0
+
+
+@pytest.fixture
+def measured(tmp_path: Path):
+    def measure(text: str, **options):
+        path = tmp_path / "part.gcode"
+        path.write_text(text, encoding="utf-8", newline="")
+        return measure_gcode(path, **options)
+
+    return measure
+
+
+def is_the_cuboid(printed, raft_mm3: float = 0, rtol: float = 1e-6) -> None:
+    mass = LENGTH * DEPTH * TALL * 1.25e-3
+    assert printed.mass_g == pytest.approx(mass, rel=1e-6)
+    assert printed.centre_of_mass_mm == pytest.approx((110, 110, TALL / 2), abs=1e-6)
+    expected = mass / 12 * np.diag([DEPTH**2 + TALL**2, LENGTH**2 + TALL**2, LENGTH**2 + DEPTH**2])
+    np.testing.assert_allclose(printed.inertia_g_mm2, expected, rtol=rtol, atol=1e-6)
+    # Round ends stand out by half a width along x
+    low, high = printed.contact_polygon_mm.min(axis=0), printed.contact_polygon_mm.max(axis=0)
+    np.testing.assert_allclose(low, [100 - WIDTH / 2, 100], atol=1e-5)
+    np.testing.assert_allclose(high, [120 + WIDTH / 2, 120], atol=1e-5)
+    half_disc = 16 / 2 * math.sin(2 * math.pi / 16) * (WIDTH / 2) ** 2 / 2
+    ends = 40 * 2 * half_disc
+    assert printed.contact_area_mm2 == pytest.approx(LENGTH * DEPTH + ends, rel=1e-5)
+    assert printed.tilt_deg == pytest.approx(math.degrees(math.atan(10 / 5)), abs=0.05)
+    assert printed.filament_mm3 == pytest.approx(LENGTH * DEPTH * TALL + raft_mm3, rel=1e-6)
+
+
+@pytest.mark.parametrize("relative", [True, False])
+@pytest.mark.parametrize("piece", [173, 4096, 1 << 22])
+def test_a_cuboid_of_beads(measured, monkeypatch, relative: bool, piece: int):
+    monkeypatch.setattr(measuring, "_PIECE_BYTES", piece)
+    is_the_cuboid(measured(beads(relative=relative) + FILAMENT))
+
+
+FLAVOURS = {
+    "PrusaSlicer": {},
+    "OrcaSlicer": {"label": ";TYPE:Outer wall"},
+    "BambuStudio": {
+        "label": "; FEATURE: Outer wall",
+        "width": "; LINE_WIDTH: {:g}",
+        "height": "; LAYER_HEIGHT: {:g}",
+    },
+    "SuperSlicer": {"label": ";TYPE:Internal bridge infill"},
+    "Cura": {"label": ";TYPE:WALL-OUTER", "width": "", "height": ""},
+    "nobody": {"label": ";nothing", "width": "", "height": ""},
+}
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_every_slicers_comments(measured, flavour: str):
+    text = beads(**FLAVOURS[flavour]) + FILAMENT
+    printed = measured(text)
+    # Without a width, a bead's own width is missing from the inertia
+    is_the_cuboid(printed, rtol=1e-6 if ";WIDTH" in text or "LINE_WIDTH" in text else 1e-3)
+    expected = {
+        "OrcaSlicer": "external perimeter", "BambuStudio": "external perimeter",
+        "Cura": "external perimeter", "SuperSlicer": "bridge infill",
+        "PrusaSlicer": "solid infill", "nobody": "unlabelled",
+    }[flavour]  # fmt: skip
+    assert list(printed.feature_mass_g) == [expected]
+
+
+def test_other_ways_to_write_the_same(measured):
+    text = beads() + FILAMENT
+    is_the_cuboid(measured(text.replace("\n", "\r\n")))
+    is_the_cuboid(measured(text.replace("G1 X", "G01X").replace(" E", "E")))
+    sent = [
+        line if line.startswith(";") else f"  {line.split(' ;')[0]}*71"
+        for line in beads().splitlines()
+    ]
+    is_the_cuboid(measured("\n".join(sent) + "\n" + FILAMENT))
+    lower = "\n".join(
+        line if line.startswith(";") else line.lower() for line in beads().splitlines()
+    )
+    is_the_cuboid(measured(lower + "\n" + FILAMENT))
+    is_the_cuboid(measured(text.rstrip("\n")))
+
+
+def test_inches(measured):
+    lines = []
+    for line in beads().splitlines():
+        words = line.split(" ;")[0].split()
+        if words[0] == "G1":
+            words = [w if w[0] in "GF" else f"{w[0]}{float(w[1:]) / 25.4:.9f}" for w in words]
+        lines.append(" ".join(words).replace("G21", "G20") if line[0] != ";" else line)
+    is_the_cuboid(measured("\n".join(lines) + "\n" + FILAMENT))
+
+
+def test_relative_axes_and_new_origins(measured):
+    """The head's own way: G91 throughout, and an origin moved with G92 on the way."""
+    text = ["G90", "M83", ";TYPE:Perimeter", f";WIDTH:{WIDTH}", f";HEIGHT:{HEIGHT}"]
+    text += ["G1 X100 Y100.25 Z0", "G92 X0 Y7", "G91"]
+    per_line = LENGTH * WIDTH * HEIGHT / AREA_175
+    for layer in range(50):
+        text.append("G1 Z0.2")
+        for _ in range(40):
+            text += [f"G1 X20 E{per_line:.9f}", "G1 X-20", "G1 Y0.5"]
+        text += ["G1 Y-20"]
+        if layer == 20:
+            text += ["G90", "G1 X0", "G92 X50", "G1 X50", "G91"]
+    is_the_cuboid(measured("\n".join(text) + "\n" + FILAMENT))
+
+
+def test_retraction_is_no_material(measured):
+    text = beads().replace("G1 Z", "G1 E-2\nG1 X5 Y5 E-0.5\nG1 E2.5\nG10\nG11\nG1 Z")
+    is_the_cuboid(measured(text + FILAMENT))
+
+
+@pytest.mark.parametrize("how", ["M200 D1.75\n", "; use_volumetric_e = 1\n"])
+def test_volumetric_filament(measured, how: str):
+    text = beads(per_mm=WIDTH * HEIGHT)
+    is_the_cuboid(measured((how + text if how[0] == "M" else text + how) + FILAMENT))
+
+
+def test_each_extruder_has_its_own_filament(measured):
+    one = beads()
+    two = beads(at=(100.0, 150.0), per_mm=WIDTH * HEIGHT / (math.pi / 4 * 2.85**2))
+    said = "; filament_diameter = 1.75,2.85\n; filament_density = 1,3\n"
+    printed = measured(one + "T1\n" + two + said)
+    assert printed.volume_mm3 == pytest.approx(2 * 4000, rel=1e-6)
+    assert printed.mass_g == pytest.approx(4.0 + 12.0, rel=1e-6)
+    assert printed.centre_of_mass_mm[1] == pytest.approx((110 * 4 + 160 * 12) / 16, rel=1e-6)
+    assert printed.assumed == ()
+
+
+def test_what_is_left_out_is_told_but_not_weighed(measured):
+    extra = {
+        "Skirt/Brim": "skirt", "Support material": "support material", "Custom": "custom",
+        "Wipe tower": "wipe tower",
+    }  # fmt: skip
+    text = beads()
+    for label in extra:
+        text += beads(label=f";TYPE:{label}", at=(50.0, 20.0), layers=5)
+    printed = measured(text + FILAMENT)
+    assert printed.mass_g == pytest.approx(5.0)
+    assert printed.left_out == tuple(sorted(extra.values()))
+    for feature in extra.values():
+        assert printed.feature_mass_g[feature] == pytest.approx(0.5)
+    assert printed.filament_mm3 == pytest.approx(4000 + 3 * 400, rel=1e-6)
+    with_all = measured(text + FILAMENT, left_out=())
+    assert with_all.mass_g == pytest.approx(7.0)
+
+
+def test_start_code_before_the_first_label_is_custom(measured):
+    prime = "M83\nG1 X0 Y0 Z0.3\nG1 X100 E9\n"
+    printed = measured(prime + beads() + FILAMENT)
+    is_the_cuboid(printed)
+    assert printed.feature_mass_g["custom"] == pytest.approx(9 * AREA_175 * 1.25e-3)
+
+
+@pytest.mark.parametrize("clockwise", [True, False])
+@pytest.mark.parametrize("by", ["centre", "radius", "whole"])
+def test_arcs(measured, clockwise: bool, by: str):
+    """A ring of radius 20 about (100, 100), as quarters or in one go."""
+    corners = [(120, 100), (100, 120), (80, 100), (100, 80)]
+    if clockwise:
+        corners = [corners[i] for i in (0, 3, 2, 1)]
+    code = "G2" if clockwise else "G3"
+    per_ring = 2 * math.pi * 20 * WIDTH * HEIGHT / AREA_175
+    text = ["M83", ";TYPE:Perimeter", f";WIDTH:{WIDTH}", f";HEIGHT:{HEIGHT}", "G1 X120 Y100 Z0.2"]
+    if by == "whole":
+        text.append(f"{code} I-20 J0 E{per_ring:.9f}")
+    else:
+        for here, there in zip(corners, corners[1:] + corners[:1], strict=True):
+            way = f"I{100 - here[0]} J{100 - here[1]}" if by == "centre" else "R20"
+            text.append(f"{code} X{there[0]} Y{there[1]} {way} E{per_ring / 4:.9f}")
+    printed = measured("\n".join(text) + "\n" + FILAMENT)
+    assert printed.volume_mm3 == pytest.approx(2 * math.pi * 20 * WIDTH * HEIGHT, rel=1e-6)
+    assert printed.centre_of_mass_mm == pytest.approx((100, 100, 0.1), abs=1e-6)
+    assert printed.inertia_g_mm2[2, 2] == pytest.approx(printed.mass_g * 400, rel=2e-3)
+    assert np.linalg.norm(printed.contact_polygon_mm - 100, axis=1).max() == pytest.approx(
+        20.25, abs=0.03
+    )
+
+
+def test_a_large_arc_by_negative_radius(measured):
+    text = (
+        "M83\n;TYPE:Perimeter\n;WIDTH:0.5\n;HEIGHT:0.2\nG1 X120 Y100 Z0.2\nG3 X100 Y80 R-20 E10\n"
+    )
+    printed = measured(text + FILAMENT)
+    # Three quarters of a ring: its centre lies at r sin(α) / α from the middle, α = 135°
+    distance = 20 * math.sin(math.radians(135)) / math.radians(135)
+    x, y, _ = printed.centre_of_mass_mm
+    assert math.hypot(x - 100, y - 100) == pytest.approx(distance, rel=1e-3)
+    assert (x - 100, y - 100) == pytest.approx((-distance / 2**0.5, distance / 2**0.5), rel=1e-3)
+
+
+def test_material_and_support_inside_cavities(measured):
+    cavity = Manifold.cube((7.8, 8, 4)).translate((106.1, 106, 3))
+    wall = beads()
+    printed = measured(wall + FILAMENT, cavities=[cavity])
+    # Axes deeper than half a line: sampled every half millimetre along x
+    layers = np.arange(50) * 0.2 + 0.1
+    layers = np.sum((layers > 3.25) & (layers < 6.75))
+    lines = 100.25 + 0.5 * np.arange(40)
+    lines = np.sum((lines > 106.25 + 1e-9) & (lines < 113.75 - 1e-9))
+    expected = layers * lines * 7.3 * WIDTH * HEIGHT
+    assert printed.in_cavities_mm3 == pytest.approx(expected, rel=0.05)
+    assert printed.support_in_cavities_mm3 == 0.0
+    support = beads(label=";TYPE:Support material") + beads(at=(200.0, 100.0))
+    printed = measured(support + FILAMENT, cavities=[cavity])
+    assert printed.support_in_cavities_mm3 == pytest.approx(expected, rel=0.05)
+    elsewhere = cavity.translate((50, 0, 0))
+    assert measured(wall + FILAMENT, cavities=[elsewhere]).in_cavities_mm3 == 0.0
+
+
+def test_what_the_file_does_not_say_is_told(measured):
+    printed = measured(beads())
+    assert len(printed.assumed) == 2
+    assert printed.mass_g == pytest.approx(4.0 * 1.24)
+    told = measured(beads(), diameter_mm=1.75, density_g_cm3=1.25)
+    is_the_cuboid(told)
+    assert told.assumed == ()
+
+
+def test_a_part_on_a_raft_stands_on_its_own_lowest_layer(measured):
+    raft = beads(label=";TYPE:Support material", layers=3)
+    lifted = "".join(
+        f"G1 Z{float(line[4:].split()[0]) + 0.6:.3f}\n" if line.startswith("G1 Z") else line + "\n"
+        for line in beads().splitlines()
+    )
+    is_the_cuboid(measured(raft + lifted + FILAMENT), raft_mm3=240)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"GCDE\x01\x00\x00", "binary"),
+        (b"PK\x03\x04", "archive"),
+        (b"", "prints nothing"),
+        (b"solid cube\nendsolid\n", "prints nothing"),
+        (b"M83\nG1 X1 Y2 Z0.2 E1.2.3\n", "line 2"),
+        (b"M83\nG1 X--1 E1\n", "line 2"),
+        (b"M83\nG1 X E1\n", "line 2"),
+        (b"M83\nG1 X1234567890123456789 E1\n", "line 2"),
+    ],
+)
+def test_what_is_refused(tmp_path: Path, content: bytes, words: str):
+    path = tmp_path / "x.gcode"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=words) as caught:
+        measure_gcode(path)
+    assert "x.gcode" in caught.value.message
+
+
+def test_a_missing_file_is_an_input_error(tmp_path: Path):
+    with pytest.raises(InputError, match="no such file"):
+        measure_gcode(tmp_path / "none.gcode")
+
+
+def plain_measure(moves) -> tuple[float, np.ndarray]:
+    """An independent reader of absolute moves: mass and centre by one loop."""
+    at, mass, first = np.zeros(3), 0.0, np.zeros(3)
+    for x, y, z, e in moves:
+        to = np.array([x, y, z])
+        if e > 0 and (to[:2] != at[:2]).any():
+            mass += e
+            first += e * ((at + to) / 2 - [0, 0, 0.1])
+        at = to
+    return mass * AREA_175 * 1.25e-3, first / mass if mass else first
+
+
+coordinate = st.integers(0, 200_000).map(lambda n: n / 1000)
+moves = st.lists(
+    st.tuples(
+        coordinate, coordinate, st.sampled_from([0.2, 0.4, 7.6]), st.sampled_from([0, 0, 1.5, 2])
+    ),
+    min_size=4, max_size=40,
+)  # fmt: skip
+
+
+@given(moves=moves, piece=st.integers(20, 400))
+def test_any_moves_weigh_what_a_plain_loop_says(tmp_path_factory, moves, piece: int):
+    mass, centre = plain_measure(moves)
+    path = tmp_path_factory.mktemp("moves") / "m.gcode"
+    lines = [f"G1 X{x:.3f} Y{y:.3f} Z{z} E{e}" for x, y, z, e in moves]
+    head = "M83\n;TYPE:Perimeter\n;WIDTH:0.4\n;HEIGHT:0.2\n"
+    path.write_text(head + "\n".join(lines) + "\n" + FILAMENT)
+    before = measuring._PIECE_BYTES
+    measuring._PIECE_BYTES = piece
+    try:
+        if mass == 0:
+            with pytest.raises(InputError):
+                measure_gcode(path)
+            return
+        printed = measure_gcode(path)
+    finally:
+        measuring._PIECE_BYTES = before
+    assert printed.mass_g == pytest.approx(mass, rel=1e-9)
+    bottom = min(
+        (z - 0.2 for a, (x, y, z, e) in zip([(0, 0, 0, 0), *moves], moves, strict=False)
+         if e > 0 and (a[0], a[1]) != (x, y)),
+        default=0.0,
+    )  # fmt: skip
+    expected = centre - np.array([0, 0, bottom])
+    np.testing.assert_allclose(printed.centre_of_mass_mm, expected, atol=1e-6)
