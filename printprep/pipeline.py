@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from printprep.progress import SILENT, Progress
 from printprep.stopwatch import Stopwatch
-from printprep.types import HollowResult, Lean
+from printprep.types import Advice, HollowResult, Lean
 
 if TYPE_CHECKING:
     import trimesh
 
     from printprep.density.program import BasePolicy
     from printprep.profiles import Profile
-    from printprep.types import Model
+    from printprep.types import Model, Solid
 
 Objective = Literal["lean", "paper"]
 
@@ -30,6 +31,7 @@ def hollow(
     scale: float | None = None,
     height_mm: float | None = None,
     size_mm: float | None = None,
+    pose: int | None = None,
     resolution: int = 64,
     lean: float | str | Lean | None = None,
     objective: Objective = "lean",
@@ -40,10 +42,11 @@ def hollow(
 
     Parameters
     ----------
-    model : a file (STL, OBJ, PLY, GLB, 3MF) or a trimesh.Trimesh.
+    model : a file (STL, OBJ, PLY, GLB, 3MF; NPZ, NPY, PT for voxels) or a trimesh.Trimesh.
     profile : name or path of a profile, or one already loaded;  overrides : dotted keys on top.
     units : of the file: mm, cm, m, in;  up : the file's axis that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
+    pose : K, to lay the model, as placed so far, into its K-th steadiest stable pose.
     resolution : voxels along the longest side for the optimization.
     lean : degrees at which the part must stand, or "15@90" for 15° toward the azimuth of 90°;
         None takes the profile's.
@@ -61,6 +64,7 @@ def hollow(
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper
     from printprep.stand.lean import lean_of
+    from printprep.stand.poses import stable_poses
     from printprep.stand.stability import stability
     from printprep.voxel.domain import build_interior
 
@@ -72,6 +76,8 @@ def hollow(
         placed = _read(model, units, up, scale, height_mm, size_mm)
     with clock.stage("repair"):
         solid = repair(placed)
+        if pose is not None:
+            placed, solid = _posed(placed, solid, pose)
     with clock.stage("voxelize"):
         interior = build_interior(
             solid,
@@ -88,6 +94,11 @@ def hollow(
     with clock.stage("solve"):
         settle = settle_paper if objective == "paper" else settle_lean
         density, part, standing = settle(solid, room, program, choice, asked)
+    advice = None
+    if density.reachable_deg is not None:
+        with clock.stage("advice"):
+            tilts = tuple(found.tilt_deg for found in stable_poses(solid.manifold))
+            advice = Advice(program.growth_that_reaches(asked), tilts)
     first_layer = settings.printer.first_layer_mm
     with clock.stage("check"):
         subject = Subject(
@@ -99,6 +110,7 @@ def hollow(
             repair=solid.repair,
             hollowed=True,
             reachable_deg=density.reachable_deg,
+            advice=advice,
         )
         findings = run_rules(subject, settings)
         before = stability(solid.manifold, first_layer)
@@ -116,6 +128,7 @@ def hollow(
         mass_g=part.manifold.volume() * grams_per_mm3,
         wall_min_mm=None if subject.wall is None else subject.wall.value_mm,
         findings=findings,
+        advice=advice,
         seconds=clock.seconds,
     )
 
@@ -130,12 +143,37 @@ def _read(
 ) -> Model:
     from printprep.mesh.place import place
     from printprep.mesh.read import from_trimesh, read_mesh
+    from printprep.voxels.model import read_model
+    from printprep.voxels.read import SUFFIXES as VOXEL_SUFFIXES
 
     if isinstance(model, str | Path):
-        raw = read_mesh(Path(model), units)
+        path = Path(model)
+        voxels = path.suffix.lower() in VOXEL_SUFFIXES
+        raw = read_model(path) if voxels else read_mesh(path, units)
     else:
         raw = from_trimesh(model, units=units)
     return place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
+
+
+def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
+    """Model and solid in the stable pose of this number, the steadiest being 1."""
+    from printprep.errors import UsageError
+    from printprep.stand.poses import in_pose, stable_poses
+
+    poses = stable_poses(solid.manifold)
+    if not 1 <= number <= len(poses):
+        known = ", ".join(f"{k} ({p.tilt_deg:.0f}°)" for k, p in enumerate(poses, start=1))
+        raise UsageError(
+            f"{solid.name} has no stable pose {number}.",
+            f"It has these, with the lean each stands: {known}." if poses else None,
+        )
+    manifold, move = in_pose(solid.manifold, poses[number - 1])
+    placement = move @ solid.placement
+    vertices = placed.vertices @ move[:3, :3].T + move[:3, 3]
+    return (
+        replace(placed, vertices=vertices, placement=placement),
+        replace(solid, manifold=manifold, placement=placement),
+    )
 
 
 def _check_resolution(resolution: int) -> None:

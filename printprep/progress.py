@@ -20,6 +20,7 @@ STAGES: Mapping[str, str] = MappingProxyType(
         "base": "Choosing what it stands on",
         "solve": "Finding the lightest filling that stands",
         "cavity": "Cutting the cavity",
+        "advice": "Looking for what would make it stand",
         "check": "Checking walls, stand and surface",
         "write": "Writing the file",
     }

@@ -272,6 +272,19 @@ class Simulation:
     tippings: tuple[Tipping, ...]
 
 
+@dataclass(frozen=True)
+class Advice:
+    """What would make a lean that is out of reach feasible.
+
+    growth_mm : least growth of the footprint, in steps of half a millimetre, at which some filling
+    reaches it; None when none up to 30 mm does.
+    poses_deg : tilt angles of the solid in its stable poses, the steadiest first.
+    """
+
+    growth_mm: float | None
+    poses_deg: tuple[float, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class HollowResult:
     """Everything ``hollow`` found out.  Masses are geometric volume times material density."""
@@ -288,6 +301,7 @@ class HollowResult:
     mass_g: float
     wall_min_mm: float | None
     findings: tuple[Finding, ...]
+    advice: Advice | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 SIMPLIFY_MM = 0.02
 # Walls thinner than asked by more than the first are not accepted, and then all by more than the
 # second are corrected.  The promise is 0.05.
-ACCEPTED_MM = 0.04
-CORRECTED_MM = 0.03
+ACCEPTED_MM = 0.03
+CORRECTED_MM = 0.02
 MOST_CORRECTIONS = 8
 
 
@@ -40,7 +40,8 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
     Returns
     -------
     Manifold, simplified by at most 0.02 mm, nowhere closer to the solid's surface than the wall
-    less 0.04 mm.
+    less 0.03 mm at the samples taken (facet centres and outside vertices); edges that cross lie
+    up to 0.01 mm closer.
 
     Raises
     ------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
 from printprep.stand.lean import tilt_toward
-from printprep.types import Finding
+from printprep.types import Advice, Finding
 
 if TYPE_CHECKING:
     from printprep.check.subject import Subject
@@ -33,16 +33,32 @@ def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
         message += "." if tilt is None else f"; this part stands to {tilt:.1f}°."
     else:
         message = "No filling makes it stand: its weight lies outside its feet whatever is inside."
-    growth = profile.stability.base_growth_max_mm
+    del profile
     yield Finding(
         "lean-out-of-reach",
         "error",
         message,
-        "A base (--base auto) or a larger one "
-        f"(--set stability.base_growth_max_mm={max(2 * growth, 3):g}), another pose (--up), "
-        "or a smaller --lean.",
+        _ways_out(subject.advice),
         value=reachable,
         limit=subject.lean.angle_deg,
         unit="deg",
         at_mm=subject.stability.centre_of_mass_mm,
     )
+
+
+def _ways_out(advice: Advice | None) -> str:
+    """What would help, with figures where they are known."""
+    ways = []
+    if advice is not None and advice.growth_mm is not None:
+        ways.append(
+            f"a footprint grown by {advice.growth_mm:g} mm "
+            f"(--base auto --set stability.base_growth_max_mm={advice.growth_mm:g})"
+        )
+    if advice is not None and advice.poses_deg:
+        ways.append(
+            f"a pose it stands in by itself (--pose 1: to {advice.poses_deg[0]:.0f}°, solid; "
+            f"{len(advice.poses_deg)} known)"
+        )
+    ways.append("another axis up (--up)")
+    ways.append("a smaller --lean")
+    return f"What helps: {'; '.join(ways)}."

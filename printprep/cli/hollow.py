@@ -42,6 +42,12 @@ Examples:
 @profile_options
 @placement_options
 @click.option(
+    "--pose",
+    type=int,
+    metavar="K",
+    help="Lay the model into its K-th steadiest stable pose, the steadiest being 1.",
+)
+@click.option(
     "--resolution",
     type=int,
     default=64,
@@ -82,7 +88,7 @@ def command(
     verbose: bool,
     **options: Any,
 ) -> int:
-    """Hollow MODEL (STL, OBJ, PLY, 3MF or GLB) and write the part.
+    """Hollow MODEL (STL, OBJ, PLY, 3MF or GLB; or voxels, NPZ, NPY or PT) and write the part.
 
     The part is the lightest that still stands when leaned by --lean, with no wall thinner than the
     profile's. Its outside is the model's, but for a base under its feet where that saves material.

@@ -28,6 +28,8 @@ BasePolicy = Literal["auto", "never", "always"]
 
 # Growth is tried in steps of this, then at half steps around the best: mass is flat there.
 GROWTH_STEP_MM = 0.5
+# Beyond this a base is a plinth to design, not one to grow.
+MOST_GROWTH_MM = 30.0
 # Two bases within this share of the mass tie, and the simpler one wins.
 TIE = 1e-6
 
@@ -120,6 +122,17 @@ class Program:
             volume += float(solution.filling.moments[0])
             bound += solution.filling.bound
         return Choice(base, tuple(parts), volume, bound)
+
+    def growth_that_reaches(self, lean: Lean) -> float | None:
+        """Least growth, in steps of half a millimetre up to 30 mm, whose base reaches a lean."""
+        steps = round(MOST_GROWTH_MM / GROWTH_STEP_MM)
+        low, high = 0, steps + 1
+        while high - low > 1:
+            middle = steps if low == 0 and high > steps else (low + high) // 2
+            base = base_of(self.feet, middle * GROWTH_STEP_MM)
+            reached = self.solve(base, lean, 0.0).reached == np.inf
+            low, high = (low, middle) if reached else (middle, high)
+        return None if high > steps else high * GROWTH_STEP_MM
 
     @property
     def feet(self) -> Feet:

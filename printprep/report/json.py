@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Base, Finding, HollowResult, Repair, Simulation
+    from printprep.types import Advice, Base, Finding, HollowResult, Repair, Simulation
 
 
 def to_text(data: dict[str, Any]) -> str:
@@ -103,6 +103,15 @@ def finding_json(finding: Finding) -> dict[str, Any]:
     }
 
 
+def _advice(advice: Advice | None) -> dict[str, Any] | None:
+    if advice is None:
+        return None
+    return {
+        "growth_mm": number(advice.growth_mm),
+        "poses_deg": [number(tilt) for tilt in advice.poses_deg],
+    }
+
+
 def number(value: float | None, digits: int = 6) -> float | None:
     """A plain number without the digits that are only noise."""
     return None if value is None else float(f"{value:.{digits}g}") + 0.0
@@ -126,6 +135,7 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "lean_azimuth_deg": number(result.lean.azimuth_deg),
         "aim_deg": number(result.density.aim_deg),
         "reachable_deg": number(result.density.reachable_deg),
+        "advice": _advice(result.advice),
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

@@ -34,10 +34,7 @@ class Contact:
     @property
     def footing(self) -> Footing:
         """The hull's edges as outward normals and offsets; edge i runs from vertex i to i + 1."""
-        along = np.roll(self.polygon_mm, -1, axis=0) - self.polygon_mm
-        outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
-        normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
-        return Footing(normals, np.einsum("ij,ij->i", normals, self.polygon_mm))
+        return Footing.around(self.polygon_mm)
 
 
 def section_at_bed(manifold: Manifold, first_layer_mm: float) -> CrossSection:

@@ -31,6 +31,14 @@ class Footing:
     offsets_mm: Float
     share: Float | None = None
 
+    @staticmethod
+    def around(polygon_mm: Float) -> Footing:
+        """The edges of a convex polygon (k, 2), counter-clockwise; edge i runs from i to i + 1."""
+        along = np.roll(polygon_mm, -1, axis=0) - polygon_mm
+        outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
+        normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+        return Footing(normals, np.einsum("ij,ij->i", normals, polygon_mm))
+
     def toward(self, azimuth_deg: float | None) -> Footing:
         """The same edges for a lean toward one azimuth, from +x counter-clockwise; None: all."""
         if azimuth_deg is None:

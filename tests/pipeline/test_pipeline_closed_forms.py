@@ -175,3 +175,30 @@ def test_a_lean_toward_a_corner_is_kinder_than_toward_a_side() -> None:
 def test_a_lean_that_cannot_be_meant_is_refused(asked: str) -> None:
     with pytest.raises(UsageError, match="lean"):
         hollowed(solids.box(10, 10, 10), lean=asked)
+
+
+def test_a_lean_out_of_reach_says_what_would_reach_it() -> None:
+    # A post of 10 × 10 × 120 mm: full or empty its centre is at 60 at best a bit lower.
+    post = solids.box(10, 10, 120)
+    result = hollowed(post, lean=30.0, overrides={"stability.base_growth_max_mm": 1.0})
+    assert result.density.reachable_deg is not None
+    advice = result.advice
+    assert advice is not None and advice.growth_mm is not None
+    key = {"stability.base_growth_max_mm": advice.growth_mm}
+    assert hollowed(post, lean=30.0, overrides=key).density.reachable_deg is None
+    less = {"stability.base_growth_max_mm": advice.growth_mm - 0.5}
+    assert hollowed(post, lean=30.0, overrides=less).density.reachable_deg is not None
+    # Lying down: the centre 5 above a foot of 10 × 120.
+    assert advice.poses_deg[0] == pytest.approx(45.0, abs=0.01)
+
+
+def test_a_pose_lays_the_model_down() -> None:
+    result = hollowed(solids.box(10, 10, 120), pose=1)
+    assert result.part.manifold.bounding_box()[5] == pytest.approx(10.0, abs=1e-6)
+    assert result.stability.tilt_deg == pytest.approx(45.0, abs=0.5)
+    # The placement takes the model's own coordinates into the part's.
+    corner = result.part.placement @ np.array([5.0, 5.0, 120.0, 1.0])
+    assert np.abs(corner[:2]).max() == pytest.approx(60.0)
+    assert np.abs(corner[:2]).min() == pytest.approx(5.0)
+    with pytest.raises(UsageError, match="pose 99"):
+        hollowed(solids.box(10, 10, 120), pose=99)

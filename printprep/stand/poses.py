@@ -1,0 +1,109 @@
+"""The poses in which a solid stands by itself: the facets of its hull under its centre of mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.mesh.measure import arrays, from_arrays, mass_properties
+from printprep.stand.footing import Footing
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+# Hull triangles whose normals differ by less than this bear together, and poses whose downs differ
+# by less are one: a hundredth of the lean anyone asks for.
+SAME_DEG = 0.1
+MOST_POSES = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A way to lie on the bed.
+
+    rotation : (3, 3) proper, turns the solid so that the pose's facet faces down.
+    tilt_deg : the lean at which the solid tips out of it, toward its weakest side.
+    """
+
+    rotation: Float
+    tilt_deg: float
+
+
+def stable_poses(solid: Manifold) -> tuple[Pose, ...]:
+    """The poses a solid stands in, the steadiest first, twelve at most.
+
+    A pose is a facet of the convex hull with the centre of mass above its inside; its tilt angle
+    is atan(distance to the facet's nearest edge over height), as for any support polygon.
+    """
+    vertices, faces = arrays(solid.hull())
+    centre = np.array(mass_properties(solid).centre_mm)
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    normals = normals[area > 0] / area[area > 0, None]
+    poses: list[tuple[Float, Pose]] = []
+    for down in normals[np.argsort(-area[area > 0], kind="stable")]:
+        if any(down @ known > np.cos(np.radians(SAME_DEG)) for known, _ in poses):
+            continue
+        pose = _pose(down, vertices, centre)
+        if pose is not None:
+            poses.append((down, pose))
+    ranked = sorted((pose for _, pose in poses), key=lambda pose: -pose.tilt_deg)
+    return tuple(ranked[:MOST_POSES])
+
+
+def in_pose(manifold: Manifold, pose: Pose) -> tuple[Manifold, Float]:
+    """A solid turned into a pose, on the bed and centred on x = y = 0, and the (4, 4) move."""
+    vertices, faces = arrays(manifold)
+    move = np.eye(4)
+    move[:3, :3] = pose.rotation
+    turned = vertices @ pose.rotation.T
+    low, high = turned.min(axis=0), turned.max(axis=0)
+    move[:3, 3] = -(low + high) / 2
+    move[2, 3] = -low[2]
+    return from_arrays(turned + move[:3, 3], faces), move
+
+
+def _pose(down: Float, vertices: Float, centre: Float) -> Pose | None:
+    """The pose with this face normal pointing down, None when the solid falls out of it."""
+    rotation = _turn_down(down)
+    height = vertices @ down
+    reach = float(np.ptp(vertices, axis=0).max())
+    touching = vertices[height > height.max() - reach * np.radians(SAME_DEG)]
+    flat = (touching @ rotation.T)[:, :2]
+    footing = _footing(flat)
+    if footing is None:
+        return None
+    above = (rotation @ centre)[:2]
+    lift = float(height.max() - centre @ down)
+    ahead = float(np.min(footing.offsets_mm - footing.normals @ above))
+    if ahead <= 0:
+        return None
+    return Pose(rotation, float(np.degrees(np.arctan2(ahead, lift))))
+
+
+def _turn_down(down: Float) -> Float:
+    """(3, 3) the shortest turn that takes a unit vector to −z (Rodrigues)."""
+    target = np.array([0.0, 0.0, -1.0])
+    axis = np.cross(down, target)
+    cosine = float(down @ target)
+    if cosine < -1 + 1e-12:
+        return np.diag([1.0, -1.0, -1.0])
+    skew = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    result: Float = np.eye(3) + skew + skew @ skew / (1 + cosine)
+    return result
+
+
+def _footing(points: Float) -> Footing | None:
+    """Edges of the convex hull of points (n, 2), None when they lie on a line."""
+    from manifold3d import CrossSection
+
+    hull = CrossSection.hull_points(points)
+    if hull.is_empty() or hull.area() <= 0:
+        return None
+    return Footing.around(np.asarray(hull.to_polygons()[0], dtype=float))
