@@ -1,9 +1,8 @@
 """One body on a bed, for MuJoCo: what touches, what weighs, and in which units.
 
 Shape.  A convex body meets a plane at its vertices, so each vertex of the collision hull is a
-contact point of its own.  (MuJoCo's contact of a mesh with a plane keeps at most four points, no
-two closer than 0.3 of the body's radius: a small foot would be one point, and nothing stands on
-that.)  The hull is that of the outside above the first layer's middle, with the section there
+contact point of its own.  (MuJoCo's contact of a mesh with a plane keeps three or four points, by
+release: an outline of many corners would stand on a few of them and tip too early.)  The hull is that of the outside above the first layer's middle, with the section there
 carried down to the bed: what is printed is flat, and the rounded foot of the mesh would roll.
 
 Mass.  Centre and inertia are those of the hollow body, not of the hull.  How dense it is changes
