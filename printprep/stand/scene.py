@@ -2,8 +2,9 @@
 
 Shape.  A convex body meets a plane at its vertices, so each vertex of the collision hull is a
 contact point of its own.  (MuJoCo's contact of a mesh with a plane keeps three or four points, by
-release: an outline of many corners would stand on a few of them and tip too early.)  The hull is that of the outside above the first layer's middle, with the section there
-carried down to the bed: what is printed is flat, and the rounded foot of the mesh would roll.
+release: an outline of many corners would stand on a few of them and tip too early.)  The hull is
+that of the outside above the first layer's middle, with the section there carried down to the bed:
+what is printed is flat, and the rounded foot of the mesh would roll.
 
 Mass.  Centre and inertia are those of the hollow body, not of the hull.  How dense it is changes
 nothing: gravity, friction and inertia forces all grow with the mass alike.
@@ -12,7 +13,7 @@ Units.  Length is the body's radius of gyration, mass its own mass, time the sec
 matrix is close to the identity for a chess pawn and a garden gnome, and the solver's tolerances
 mean the same for both.  With acceleration-based contacts of impedance d and time constant t the
 bed gives way by about (1 − d) g t², here 0.016 µm, so that the angle at which a foot a millimetre
-wide tips is not blurred, and friction creeps by less than a micrometre per second.
+wide tips is not blurred; friction creeps by nanometres a second.
 
 Source: MuJoCo documentation, "Computation" (solver parameters, impedance).
 """
