@@ -73,7 +73,7 @@ def hollow(
     _check_resolution(resolution)
     clock = Stopwatch(progress)
     with clock.stage("read"):
-        placed = _read(model, units, up, scale, height_mm, size_mm)
+        placed = placed_model(model, units, up, scale, height_mm, size_mm)
     with clock.stage("repair"):
         solid = repair(placed)
         if pose is not None:
@@ -133,7 +133,7 @@ def hollow(
     )
 
 
-def _read(
+def placed_model(
     model: str | Path | trimesh.Trimesh,
     units: str | None,
     up: str,
@@ -141,6 +141,7 @@ def _read(
     height_mm: float | None,
     size_mm: float | None,
 ) -> Model:
+    """A file or mesh as triangles on the bed; parameters as for :func:`hollow`."""
     from printprep.mesh.place import place
     from printprep.mesh.read import from_trimesh, read_mesh
     from printprep.voxels.model import read_model

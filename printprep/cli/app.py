@@ -15,6 +15,8 @@ CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 80}
 _COMMANDS = {
     "hollow": "printprep.cli.hollow",
     "check": "printprep.cli.check",
+    "explore": "printprep.cli.explore",
+    "verify": "printprep.cli.verify",
     "simulate": "printprep.cli.simulate",
     "evaluate": "printprep.cli.evaluate",
     "profiles": "printprep.cli.profiles",
