@@ -1,0 +1,92 @@
+"""``printprep verify``: what the slicer prints, against what was computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from printprep.cli.options import json_option
+
+_EPILOG = """\b
+Examples:
+  printprep verify out.3mf
+  printprep verify out.3mf --load my-printer.ini --json
+  printprep verify out.3mf --compare model.stl --fail-on warning
+"""
+
+
+@click.command("verify", short_help="Slice a part and measure its G-code.", epilog=_EPILOG)
+@click.argument("part", type=click.Path(path_type=Path), metavar="PART.3mf")
+@click.option(
+    "--slicer",
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="The PrusaSlicer to use. Default: PRINTPREP_SLICER, else the one on this machine.",
+)
+@click.option(
+    "--load",
+    type=click.Path(path_type=Path),
+    metavar="CONFIG.ini",
+    help="Slice with these settings (an .ini, or a G-code that carries them), not the profile's.",
+)
+@click.option(
+    "--compare",
+    "compare_with",
+    type=click.Path(path_type=Path),
+    metavar="MODEL",
+    help="The model the part was made of: slice it too, with 15 % gyroid and with lightning "
+    "infill, at walls as thick.",
+)
+@click.option(
+    "--fail-on",
+    type=click.Choice(("none", "info", "warning", "error")),
+    default="error",
+    show_default=True,
+    help="Exit with 1 when a finding is at least as severe.",
+)
+@json_option
+@click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr.")
+@click.option("-v", "--verbose", is_flag=True, help="The traceback of a defect.")
+def command(
+    part: Path,
+    slicer: Path | None,
+    load: Path | None,
+    compare_with: Path | None,
+    fail_on: Any,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Slice PART.3mf, made by `printprep hollow`, and measure the G-code.
+
+    Mass, centre of mass, contact and tilt angle as printed, against the figures the file carries;
+    whether anything is printed inside cavities, and, with supports switched on, whether they go
+    there. Nothing is written.
+    """
+    from printprep.check.registry import at_or_above
+    from printprep.cli.console import stdout_console, trouble_to_stderr
+    from printprep.progress import for_terminal
+    from printprep.slicer.verify import verify
+
+    del verbose  # read where errors are reported
+    found = verify(
+        part,
+        slicer=slicer,
+        load=load,
+        compare_with=compare_with,
+        progress=for_terminal(quiet=quiet),
+    )
+    if as_json:
+        from printprep.report.json import to_text
+        from printprep.slicer.verify_report import verify_json
+
+        click.echo(to_text(verify_json(found, part=str(part))))
+    elif quiet:
+        trouble_to_stderr(found.findings)
+    else:
+        from printprep.slicer.verify_report import show_verified
+
+        show_verified(stdout_console(), found)
+    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0

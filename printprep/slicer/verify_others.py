@@ -1,0 +1,102 @@
+"""What the same model comes to when it is printed the usual ways, at walls as thick as the part's.
+
+With the least lines and layers that are no thinner than the profile's wall: solid but for 15 %
+gyroid, and with lightning infill, which only holds up ceilings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import UsageError
+
+if TYPE_CHECKING:
+    from printprep.profiles import Profile
+    from printprep.slicer.process import Slicer
+    from printprep.slicer.verify_part import CarriedPart
+
+_WAYS = (
+    ("15 % gyroid", {"fill_density": "15%", "fill_pattern": "gyroid"}),
+    ("lightning infill", {"fill_density": "15%", "fill_pattern": "lightning"}),
+)
+_SLACK_MM = 1.0  # between the model's size and the part's, beyond the base
+
+
+@dataclass(frozen=True)
+class Other:
+    """Another way to print: what it takes, and how it stands; seconds by the slicer's estimate."""
+
+    way: str
+    mass_g: float
+    seconds: float | None
+    tilt_deg: float
+
+
+def slice_others(
+    program: Slicer,
+    part: CarriedPart,
+    model: Path,
+    settings: Mapping[str, str],
+    load: Path | None,
+    folder: Path,
+) -> tuple[Other, ...]:
+    """Slice the model as it is, placed as the part is, once for each way.
+
+    Raises UsageError where the model is not the one the part was made of, or the file's errors.
+    """
+    from printprep.gcode.measure import measure_gcode
+    from printprep.mesh.read import read_mesh
+    from printprep.mesh.repair import repair
+    from printprep.mesh.write import to_bytes
+    from printprep.slicer.verify_rules import tilt_as_printed
+    from printprep.types import Model
+
+    raw = read_mesh(model)
+    # Mesh readers may have turned and scaled the file's numbers; the placement starts from those
+    from_raw = part.placement @ np.linalg.inv(raw.from_file)
+    vertices = raw.vertices @ from_raw[:3, :3].T + from_raw[:3, 3]
+    _refuse_another(part, model, vertices.max(axis=0) - vertices.min(axis=0))
+    solid = repair(Model(vertices, raw.faces, from_raw, raw.name))
+    stl = folder / "model.stl"
+    stl.write_bytes(to_bytes(solid.manifold, ".stl"))
+    gcode = folder / "other.gcode"
+    others = []
+    for way, infill in _WAYS:
+        program.slice(stl, gcode, {**settings, **_walls(part.profile), **infill}, load)
+        printed = measure_gcode(gcode)
+        tilt = tilt_as_printed(printed, part.lean)
+        others.append(Other(way, printed.mass_g, printed.said.seconds, tilt))
+    return tuple(others)
+
+
+def _walls(profile: Profile) -> dict[str, str]:
+    line, layer = profile.printer.line_width_mm, profile.printer.layer_height_mm
+    assert line is not None  # an fdm profile has one
+    layers = str(_count(profile.wall_mm, layer))
+    return {
+        "perimeters": str(_count(profile.wall_mm, line)),
+        "top_solid_layers": layers,
+        "bottom_solid_layers": layers,
+    }
+
+
+def _count(thick_mm: float, each_mm: float) -> int:
+    return math.ceil(thick_mm / each_mm - 1e-6)
+
+
+def _refuse_another(part: CarriedPart, model: Path, size_mm: np.ndarray) -> None:
+    base_mm = 2 * part.profile.stability.base_growth_max_mm
+    room = part.size_mm - size_mm
+    if (room < -_SLACK_MM).any() or (room > base_mm + _SLACK_MM).any():
+        sizes = " × ".join(f"{side:.1f}" for side in size_mm)
+        raise UsageError(
+            f"{model.name} is not the model that {part.file.name} was made of: placed alike it is "
+            f"{sizes} mm.",
+            "Name that model's file, unchanged.",
+        )

@@ -1,0 +1,212 @@
+"""Where a print differs from what was computed, as findings.
+
+Tolerances are those within which the part's own claims stay true: the lean is solved for with a
+margin, and a slicer rounds beads and layers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.types import Finding, Stability
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.gcode.printed import Printed
+    from printprep.slicer.verify_part import CarriedPart
+    from printprep.types import Lean
+
+    Float = NDArray[np.float64]
+
+MASS_SHARE = 0.04
+CENTRE_MM, CENTRE_SHARE = 0.5, 0.01  # of the height, if that is more
+LEAN_DEG = 1.0
+CONTACT_MM = 0.5  # a line: what is thinner than one does not print
+FILAMENT_SHARE = 0.005
+
+_SETTINGS = "Slice it with the profile's settings: `printprep profiles export`."
+
+
+def standing(printed: Printed) -> Stability:
+    """A print as a ``Stability``, so that it is judged by the same rules as a part."""
+    from printprep.stand.contact import Contact
+
+    contact = Contact(printed.contact_polygon_mm, printed.contact_area_mm2)
+    footing = contact.footing
+    ahead = footing.offsets_mm - footing.normals @ np.array(printed.centre_of_mass_mm[:2])
+    weakest = int(np.argmin(ahead))
+    nx, ny = footing.normals[weakest]
+    return Stability(
+        support_polygon_mm=printed.contact_polygon_mm,
+        contact_area_mm2=printed.contact_area_mm2,
+        centre_of_mass_mm=printed.centre_of_mass_mm,
+        tilt_deg=printed.tilt_deg,
+        weakest_edge=weakest,
+        weakest_azimuth_deg=float(np.degrees(np.arctan2(ny, nx)) % 360.0),
+    )
+
+
+def tilt_as_printed(printed: Printed, lean: Lean) -> float:
+    """The print's tilt angle, toward the lean's azimuth if it has one."""
+    from printprep.stand.lean import tilt_toward
+
+    tilt = tilt_toward(standing(printed), lean)
+    assert tilt is not None  # a print without contact is refused when it is measured
+    return tilt
+
+
+def compare(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
+    """What differs between a part and a print of it, by more than the tolerances."""
+    yield from _mass(part, printed)
+    yield from _centre(part, printed)
+    yield from _contact(part, printed)
+    yield from _tilt(part, printed)
+    yield from _cavities(printed)
+    yield from _own_count(printed)
+
+
+def support_inside(printed: Printed) -> Iterator[Finding]:
+    """Whether supports, switched on, go where nobody gets them out."""
+    inside_mm3 = printed.support_in_cavities_mm3
+    if inside_mm3 > 0:
+        yield Finding(
+            "support-in-cavity",
+            "error",
+            f"With supports switched on, {inside_mm3 / 1000:.2g} cm³ of them fill cavities.",
+            "Let supports start from the build plate only.",
+            inside_mm3,
+            0.0,
+            "mm³",
+            printed.in_cavities_at_mm,
+        )
+
+
+def centre_offset_mm(part: CarriedPart, printed: Printed) -> float:
+    """Distance between the centres of mass, computed and printed."""
+    return float(np.linalg.norm(np.array(printed.centre_of_mass_mm) - part.centre_mm))
+
+
+def contact_offset_mm(part: CarriedPart, printed: Printed) -> float | None:
+    """Greatest distance between the support polygons: Hausdorff's, of convex sets."""
+    if not len(part.contact_polygon_mm):
+        return None
+    angles = np.radians(np.arange(0.0, 360.0, 1.0))
+    toward = np.stack([np.cos(angles), np.sin(angles)])
+    reach = [
+        (polygon @ toward).max(axis=0)
+        for polygon in (part.contact_polygon_mm, printed.contact_polygon_mm)
+    ]
+    return float(np.abs(reach[1] - reach[0]).max())
+
+
+def _mass(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
+    share = printed.mass_g / part.mass_g - 1
+    if abs(share) > MASS_SHARE:
+        yield Finding(
+            "printed-mass",
+            "warning",
+            f"The print weighs {printed.mass_g:.1f} g, {abs(share):.0%} "
+            f"{'more' if share > 0 else 'less'} than the {part.mass_g:.1f} g computed.",
+            _SETTINGS,
+            printed.mass_g,
+            part.mass_g,
+            "g",
+        )
+
+
+def _centre(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
+    offset, limit = centre_offset_mm(part, printed), centre_limit_mm(part)
+    if offset > limit:
+        x, y, z = printed.centre_of_mass_mm
+        yield Finding(
+            "printed-centre-of-mass",
+            "warning",
+            f"The print's centre of mass lies {offset:.2f} mm from the one computed.",
+            _SETTINGS,
+            offset,
+            limit,
+            "mm",
+            (x, y, z),
+        )
+
+
+def centre_limit_mm(part: CarriedPart) -> float:
+    """How far the centres may lie apart."""
+    return max(CENTRE_MM, CENTRE_SHARE * float(part.size_mm[2]))
+
+
+def _contact(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
+    offset = contact_offset_mm(part, printed)
+    if offset is not None and offset > CONTACT_MM:
+        yield Finding(
+            "printed-contact",
+            "warning",
+            f"The first layer's outline differs by {offset:.2f} mm from the one computed.",
+            "Print it with the profile's first layer, line width and no elephant foot "
+            "compensation.",
+            offset,
+            CONTACT_MM,
+            "mm",
+        )
+
+
+def _tilt(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
+    if part.bodies > 1:
+        yield Finding(
+            "printed-tilt",
+            "info",
+            f"The part is {part.bodies} bodies that do not touch; "
+            "how each stands is not measured in the G-code.",
+        )
+        return
+    tilt = tilt_as_printed(printed, part.lean)
+    asked = part.lean.angle_deg
+    # Where the lean is out of reach, the part promises only the tilt it has
+    promised = asked if part.tilt_deg is None else min(asked, part.tilt_deg)
+    if tilt < promised - LEAN_DEG or tilt < 0:
+        falls = "falls by itself" if tilt < 0 else f"tips at {tilt:.1f}°"
+        yield Finding(
+            "printed-tilt",
+            "error",
+            f"As printed it {falls}; it was to stand {part.lean}.",
+            f"{_SETTINGS} A larger lean margin helps too: --set stability.lean_margin_deg=2.",
+            tilt,
+            promised,
+            "°",
+        )
+
+
+def _cavities(printed: Printed) -> Iterator[Finding]:
+    if printed.in_cavities_mm3 > 0:
+        yield Finding(
+            "filled-cavity",
+            "error",
+            f"The slicer prints {printed.in_cavities_mm3 / 1000:.2g} cm³ inside cavities.",
+            "Do not close holes or repair the model in the slicer (slicing mode: regular).",
+            printed.in_cavities_mm3,
+            0.0,
+            "mm³",
+            printed.in_cavities_at_mm,
+        )
+
+
+def _own_count(printed: Printed) -> Iterator[Finding]:
+    """The reader's own test: what it adds up is what the slicer counted."""
+    said = printed.said.filament_mm3
+    # Slicers round to 0.01 cm³
+    if said and abs(printed.filament_mm3 - said) > max(FILAMENT_SHARE * said, 10.0):
+        yield Finding(
+            "filament-count",
+            "warning",
+            f"The slicer counts {said / 1000:.2f} cm³ of filament, the moves add up to "
+            f"{printed.filament_mm3 / 1000:.2f} cm³.",
+            "Figures of this print are uncertain by as much; start G-code that prints is one "
+            "cause.",
+            printed.filament_mm3,
+            said,
+            "mm³",
+        )
