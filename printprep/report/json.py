@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep import __version__
+from printprep.report.balance import balance_json
 from printprep.stand.lean import tilt_toward
 
 if TYPE_CHECKING:
@@ -129,6 +130,7 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "solid_mass_g": number(result.solid_mass_g),
         "mass_g": number(result.mass_g),
         "mass_ratio": number(result.mass_g / result.solid_mass_g),
+        **balance_json(result.part.manifold, profile.printer.first_layer_mm),
         "tilt_solid_deg": number(tilt_toward(result.stability_solid, result.lean)),
         "tilt_deg": number(tilt_toward(result.stability, result.lean)),
         "lean_deg": number(result.lean_deg),
