@@ -69,6 +69,14 @@ Examples:
     metavar="N",
     help="Voxels along the unit cube's edge.",
 )
+@click.option(
+    "--voxels",
+    type=click.Choice(("surface", "centre")),
+    default="surface",
+    show_default=True,
+    help="surface: what the surface passes through is the shell, as in the authors' code. centre: "
+    "voxels whose centre is inside, the outermost of them the shell.",
+)
 @click.option("--set", "subset", metavar="NAME", help="Of a catalogue, the rows of this set.")
 @click.option(
     "--up",
@@ -98,6 +106,7 @@ def command(
     lean_deg: float,
     solver: Any,
     resolution: int,
+    voxels: Any,
     workers: int,
     as_json: bool,
     quiet: bool,
@@ -127,7 +136,8 @@ def command(
     )
     models = data_set(source, **which)
     silent = quiet or as_json
-    found = evaluate(models, chosen, output, workers=workers, told=None if silent else _tell)
+    told = None if silent else _tell
+    found = evaluate(models, chosen, output, voxels=voxels, workers=workers, told=told)
     write_tables(found, output)
     if as_json:
         from printprep.report.json import to_text

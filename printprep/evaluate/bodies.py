@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,8 +40,12 @@ class Body:
     reachable_deg: float | None = None
 
 
-def body_of(occupied: NDArray[np.bool_], method: Method) -> Body:
+def body_of(
+    occupied: NDArray[np.bool_], method: Method, frozen: NDArray[np.bool_] | None = None
+) -> Body:
     """Run a method on an occupancy (N, N, N) bool.
+
+    frozen : of the same shape, voxels that belong to the shell beside the outermost layer of O.
 
     What the paper's objective builds is V = {ρ̃ > 0.5}, so V is what is weighed and judged.  A lean
     program's plane can pass through a few voxels; they weigh what lies below it.
@@ -49,6 +53,10 @@ def body_of(occupied: NDArray[np.bool_], method: Method) -> Body:
     Raises GeometryError when nothing is occupied.
     """
     domain = build_domain(occupied, method.settings, shell="boundary")
+    if frozen is not None:
+        shell = domain.shell | (frozen & domain.solid)
+        interior = domain.solid & ~shell
+        domain = replace(domain, shell=shell, interior=interior, free=interior | domain.base)
     if method.kind == "solid":
         return _body(domain, domain.solid.astype(np.float64))
     if method.kind == "shell":

@@ -23,7 +23,7 @@ from printprep.evaluate.bodies import body_of
 from printprep.evaluate.cases import Case
 from printprep.evaluate.fidelity import Fidelity, fidelity
 from printprep.evaluate.methods import Method
-from printprep.evaluate.picture import Picture, picture_of
+from printprep.evaluate.picture import Picture, Voxels, picture_of
 from printprep.files import write_atomically
 from printprep.stand.simulate import STANDS_BELOW_DEG
 from printprep.voxels.surface import surface_of
@@ -61,7 +61,9 @@ class Measured:
     seconds: float
 
 
-def evaluate_case(case: Case, chosen: Sequence[Method], folder: Path) -> tuple[Measured, ...]:
+def evaluate_case(
+    case: Case, chosen: Sequence[Method], folder: Path, voxels: Voxels
+) -> tuple[Measured, ...]:
     """All methods on one model, each read from ``folder`` where it is there, else put there.
 
     Raises
@@ -69,7 +71,7 @@ def evaluate_case(case: Case, chosen: Sequence[Method], folder: Path) -> tuple[M
     InputError, GeometryError : the model cannot be read, or encloses no voxel.
     OutputError : the folder refuses.
     """
-    described = [_settings(case, method) for method in chosen]
+    described = [_settings(case, method, voxels) for method in chosen]
     files = [folder / case.name / f"{method.name}.json" for method in chosen]
     kept = [_kept(file, settings) for file, settings in zip(files, described, strict=True)]
     if all(kept):
@@ -80,7 +82,7 @@ def evaluate_case(case: Case, chosen: Sequence[Method], folder: Path) -> tuple[M
         if known is None:
             resolution = method.settings.resolution
             if resolution not in bench:
-                bench[resolution] = _Bench(picture_of(case.path, case.up, resolution))
+                bench[resolution] = _Bench(picture_of(case.path, case.up, resolution, voxels))
             known = bench[resolution].measure(case.name, method)
             _keep(file, settings, known)
         found.append(known)
@@ -99,7 +101,7 @@ class _Bench:
 
         _warm_up(method)
         start = time.perf_counter()
-        body = body_of(self._picture.occupied, method)
+        body = body_of(self._picture.occupied, method, self._picture.frozen)
         seconds = time.perf_counter() - start
         mass = float(body.weight.sum())
         rotation = final_rotation_deg(body.weight, body.ground)
@@ -145,7 +147,7 @@ def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
-def _settings(case: Case, method: Method) -> dict[str, Any]:
+def _settings(case: Case, method: Method, voxels: Voxels) -> dict[str, Any]:
     # A file that cannot be read is reported where it is read as a mesh.
     data = case.path.read_bytes() if case.path.is_file() else b""
     settings = {
@@ -153,6 +155,7 @@ def _settings(case: Case, method: Method) -> dict[str, Any]:
         "printprep": __version__,
         "model_sha256": hashlib.sha256(data).hexdigest(),
         "up": case.up,
+        "voxels": voxels,
         "method": method.described(),
     }
     reloaded: dict[str, Any] = json.loads(json.dumps(settings))

@@ -2,18 +2,26 @@
 
 The frame is the generator's: the bounding box is centred on the origin and its longest side is 1,
 so the object lies in [-0.5, 0.5]³ with z up; voxel (i, j, k) of N³ is centred at
-(index + 0.5) / N − 0.5.  Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298.
+(index + 0.5) / N − 0.5.
+
+Voxels are those of "surface": all that the surface passes through, which are the shell, and what
+they enclose.  That is what a generator's sparse structure is, and what the authors' code freezes
+and fills.  Or those of "centre": the voxels whose centre is inside, with the outermost layer for
+the shell, as the paper's text has it; a thinner shell, and never more than the object.
+
+Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from printprep.errors import GeometryError
+from printprep.evaluate.touched import touched
 from printprep.mesh.columns import winding_in_columns
 from printprep.mesh.measure import signed_volumes
 from printprep.mesh.place import place
@@ -24,8 +32,13 @@ if TYPE_CHECKING:
 
     from printprep.types import Float, Int
 
-# Columns must not meet an edge or a corner; these have no small common measure with any grid.
-_JITTER = np.array([2.0**0.5, 3.0**0.5]) * 1e-7
+Voxels = Literal["surface", "centre"]
+
+# Columns must not meet an edge or a corner, nor faces lie between two voxels; this has no small
+# common measure with any grid.
+_JITTER = np.array([2.0**0.5, 3.0**0.5, 5.0**0.5]) * 1e-7
+# The outermost faces lie this share inside the unit cube, so that they touch its own voxels.
+_WITHIN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,15 +46,17 @@ class Picture:
     """What there is to hollow, and what to compare with.
 
     vertices : (v, 3) float64 in [-0.5, 0.5]³;  faces : (f, 3) int64, seen from outside.
-    occupied : (N, N, N) bool, axis order x, y, z: the voxels whose centres lie inside.
+    occupied : (N, N, N) bool, axis order x, y, z;  frozen : the same, those of them that belong
+    to the shell whether they are outermost or not.
     """
 
     vertices: Float
     faces: Int
     occupied: NDArray[np.bool_]
+    frozen: NDArray[np.bool_]
 
 
-def picture_of(path: Path, up: str, resolution: int) -> Picture:
+def picture_of(path: Path, up: str, resolution: int, voxels: Voxels = "surface") -> Picture:
     """Read, scale and voxelize a model.
 
     Raises
@@ -54,20 +69,24 @@ def picture_of(path: Path, up: str, resolution: int) -> Picture:
     faces = placed.faces
     if signed_volumes(vertices[faces]).sum() < 0:  # inside out as a whole
         faces = faces[:, ::-1]
-    occupied = voxelized(vertices, faces, resolution)
-    if not occupied.any():
+    inside = inside_voxels(vertices, faces, resolution)
+    if not inside.any():
         raise GeometryError(
             f"{path} encloses none of the {resolution}³ voxel centres.",
             "It is flat, thinner than a voxel, or not closed.",
         )
-    return Picture(vertices, faces, occupied)
+    if voxels == "centre":
+        return Picture(vertices, faces, inside, np.zeros_like(inside))
+    shrunk = vertices * (1 - _WITHIN) + _JITTER
+    frozen = touched((shrunk[faces] + 0.5) * resolution, resolution)
+    return Picture(vertices, faces, inside | frozen, frozen)
 
 
-def voxelized(vertices: Float, faces: Int, resolution: int) -> NDArray[np.bool_]:
+def inside_voxels(vertices: Float, faces: Int, resolution: int) -> NDArray[np.bool_]:
     """(N, N, N) bool: voxels of [-0.5, 0.5]³ about whose centre the winding number exceeds ½."""
     centres = (np.arange(resolution) + 0.5) / resolution - 0.5
     x, y = np.meshgrid(centres, centres, indexing="ij")
-    columns = np.column_stack([x.ravel(), y.ravel()]) + _JITTER
+    columns = np.column_stack([x.ravel(), y.ravel()]) + _JITTER[:2]
     column_of = np.repeat(np.arange(len(columns)), resolution)
     winding = winding_in_columns(
         vertices, faces, columns, column_of, np.tile(centres, len(columns))

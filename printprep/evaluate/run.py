@@ -12,6 +12,7 @@ from printprep.errors import GeometryError, InputError, PrintprepError, UsageErr
 from printprep.evaluate.cases import Case, DataSet
 from printprep.evaluate.measured import Measured, evaluate_case, make_folder
 from printprep.evaluate.methods import Method
+from printprep.evaluate.picture import Voxels
 
 Told = Callable[[str, int, int], None]
 """Called with a model's name, how many are done and how many there are."""
@@ -21,11 +22,13 @@ Told = Callable[[str, int, int], None]
 class Evaluation:
     """All that was measured, in the order of the models and, for each, of the methods.
 
+    voxels : which voxels a model has.
     failures : the models that could not be evaluated, each with its error.
     """
 
     data_set: DataSet
     methods: tuple[Method, ...]
+    voxels: Voxels
     results: tuple[Measured, ...]
     failures: tuple[tuple[str, PrintprepError], ...]
 
@@ -35,6 +38,7 @@ def evaluate(
     chosen: Sequence[Method],
     folder: Path,
     *,
+    voxels: Voxels = "surface",
     workers: int = 1,
     told: Told | None = None,
 ) -> Evaluation:
@@ -54,7 +58,7 @@ def evaluate(
     make_folder(kept)
     found: dict[str, tuple[Measured, ...]] = {}
     failed: dict[str, PrintprepError] = {}
-    outcomes = _outcomes(models.cases, tuple(chosen), kept, workers)
+    outcomes = _outcomes(models.cases, (tuple(chosen), kept, voxels), workers)
     for done, (case, outcome) in enumerate(outcomes, start=1):
         if isinstance(outcome, PrintprepError):
             failed[case.name] = outcome
@@ -65,34 +69,34 @@ def evaluate(
     return Evaluation(
         data_set=models,
         methods=tuple(chosen),
+        voxels=voxels,
         results=tuple(row for case in models.cases for row in found.get(case.name, ())),
         failures=tuple((c.name, failed[c.name]) for c in models.cases if c.name in failed),
     )
 
 
 _Outcome = tuple[Measured, ...] | PrintprepError
+_Job = tuple[tuple[Method, ...], Path, Voxels]
 
 
-def _outcomes(
-    cases: Sequence[Case], chosen: tuple[Method, ...], kept: Path, workers: int
-) -> Iterator[tuple[Case, _Outcome]]:
+def _outcomes(cases: Sequence[Case], job: _Job, workers: int) -> Iterator[tuple[Case, _Outcome]]:
     """Each case with what came of it, as they are done."""
     if workers == 1 or len(cases) == 1:
         for case in cases:
-            yield case, _outcome(case, chosen, kept)
+            yield case, _outcome(case, *job)
         return
     # Processes begin afresh ("spawn") on every system: forking would copy threads' locks.
     with ProcessPoolExecutor(min(workers, len(cases)), get_context("spawn")) as pool:
         waiting: dict[Future[_Outcome], Case] = {
-            pool.submit(_outcome, case, chosen, kept): case for case in cases
+            pool.submit(_outcome, case, *job): case for case in cases
         }
         for future in as_completed(waiting):
             yield waiting[future], future.result()
 
 
-def _outcome(case: Case, chosen: tuple[Method, ...], kept: Path) -> _Outcome:
+def _outcome(case: Case, chosen: tuple[Method, ...], kept: Path, voxels: Voxels) -> _Outcome:
     """The results, or what is wrong with the model; a folder that refuses is no model's fault."""
     try:
-        return evaluate_case(case, chosen, kept)
+        return evaluate_case(case, chosen, kept, voxels)
     except (InputError, GeometryError) as error:
         return error

@@ -21,6 +21,10 @@ HEAD = (
     "method", "data set", "Mas", "mass ratio", "Stable %", "Rot °", "tilt °", "F-score", "Chamfer",
     "seconds",
 )  # fmt: skip
+_VOXELS = {
+    "surface": "every voxel the surface passes through in the shell",
+    "centre": "voxels whose centre is inside, the outermost in the shell",
+}
 _PAIRS = (("lean", "paper"), ("lean-at-paper-tilt", "paper"), ("lean-no-base", "paper-no-base"))
 
 
@@ -53,6 +57,7 @@ def as_json(evaluation: Evaluation) -> dict[str, Any]:
     compared = [compare(mine, other, evaluation.results) for mine, other in _PAIRS]
     return {
         "data_set": evaluation.data_set.label,
+        "voxels": evaluation.voxels,
         "methods": {method.name: method.described() for method in evaluation.methods},
         "summaries": [asdict(one) for _, one in _summaries(evaluation)],
         "comparisons": [asdict(one) for one in compared if one is not None],
@@ -67,8 +72,11 @@ def markdown(evaluation: Evaluation) -> str:
     """The tables to read: methods, ablations if there are any, comparisons, failures."""
     label, count = evaluation.data_set.label, len(evaluation.data_set.cases)
     found = {method.name: (method, one) for method, one in _summaries(evaluation)}
-    lines = [f"Data set: {label} ({count} models). The paper's figures are of its own models,"]
-    lines += [f"not of these: {SOURCE}.", ""]
+    lines = [
+        f"Data set: {label} ({count} models), {_VOXELS[evaluation.voxels]}. The paper's figures "
+        f"are of its own models, not of these: {SOURCE}.",
+        "",
+    ]
     lines += _table([found[name] for name in found if name in MAIN], label, "methods")
     if any(name in found for name in ABLATIONS if name not in MAIN):
         lines += ["", "Ablations of the paper's objective:", ""]

@@ -38,7 +38,7 @@ CASES = (Case("a", Path("a.obj"), "+z"), Case("b", Path("b.obj"), "+z"))
 
 def evaluation(*, ablations: bool = False, rows=ROWS, failures=()) -> Evaluation:
     chosen = methods(["paper", "lean"], ablations=ablations)
-    return Evaluation(DataSet("two boxes", CASES), chosen, rows, failures)
+    return Evaluation(DataSet("two boxes", CASES), chosen, "centre", rows, failures)
 
 
 def test_a_summary_is_a_mean():
