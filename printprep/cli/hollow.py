@@ -18,6 +18,8 @@ from printprep.cli.options import (
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
+    from printprep.progress import Progress
+    from printprep.slicer.verify import Verified
     from printprep.types import HollowResult
 
 _EPILOG = """\b
@@ -74,6 +76,12 @@ Examples:
     is_flag=True,
     help="Let the part go in a physics engine too, and tilt the bed until it tips.",
 )
+@click.option(
+    "--verify",
+    "verify_it",
+    is_flag=True,
+    help="Slice the part with PrusaSlicer too, and measure the G-code, as `printprep verify` does.",
+)
 @output_form_options("none")
 def command(
     model: Path,
@@ -82,6 +90,7 @@ def command(
     settings: tuple[str, ...],
     wall_mm: float | None,
     simulate: bool,
+    verify_it: bool,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -102,10 +111,15 @@ def command(
     check_output(target)
     _refuse_to_replace(model, target)
     progress = for_terminal(quiet=quiet)
+    changed = overrides(settings, wall_mm)
+    if verify_it:
+        from printprep.slicer.verify_result import check_verifiable
+
+        check_verifiable(target, profile, changed)
     result = hollow(
         model,
         profile=profile,
-        overrides=overrides(settings, wall_mm),
+        overrides=changed,
         progress=progress,
         **options,
     )
@@ -113,11 +127,15 @@ def command(
     if simulate:
         with progress.stage("simulate"):
             result = _with_simulation(result)
-    stopped = _stopped(result, fail_on)
+    verified = _verified(result, progress) if verify_it else None
+    # What one slicer makes of the part is told, but does not change the part's own file
+    found = result if verified is None else _with_findings(result, verified.findings)
+    stopped = _stopped(found, fail_on)
     if not stopped:
         with progress.stage("write"):
             write_part(result, target)
-    _say(result, model, None if stopped else target, as_json=as_json, quiet=quiet, verbose=verbose)
+    written = None if stopped else target
+    _say(found, model, written, verified, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if stopped else 0
 
 
@@ -142,6 +160,12 @@ def _with_simulation(result: HollowResult) -> HollowResult:
     return _with_findings(replace(result, simulation=found), tuple(disagreements(found)))
 
 
+def _verified(result: HollowResult, progress: Progress) -> Verified:
+    from printprep.slicer.verify_result import verify_result
+
+    return verify_result(result, progress=progress)
+
+
 def _stopped(result: HollowResult, fail_on: Any) -> bool:
     from printprep.check.registry import at_or_above
 
@@ -152,6 +176,7 @@ def _say(
     result: HollowResult,
     model: Path,
     written: Path | None,
+    verified: Verified | None,
     *,
     as_json: bool,
     quiet: bool,
@@ -163,10 +188,21 @@ def _say(
     if as_json:
         from printprep.report.json import result_json, to_text
 
-        click.echo(to_text(result_json(result, model=str(model), output=output)))
+        said = result_json(result, model=str(model), output=output)
+        if verified is not None:
+            from printprep.slicer.verify_report import verify_json
+
+            said["verified"] = verify_json(verified, part=output)
+        click.echo(to_text(said))
     elif quiet:
         trouble_to_stderr(result.findings)
     else:
         from printprep.report.terminal import show_result
 
-        show_result(stdout_console(), result, output=output, verbose=verbose)
+        console = stdout_console()
+        show_result(console, result, output=output, verbose=verbose)
+        if verified is not None:
+            from printprep.slicer.verify_report import show_verified
+
+            console.print()
+            show_verified(console, verified, with_findings=False)

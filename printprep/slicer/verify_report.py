@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.slicer.verify import Verified
 
 
-def verify_json(found: Verified, *, part: str) -> dict[str, Any]:
+def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
     """All that was found out; computed and printed figures side by side."""
     carried, printed = found.part, found.printed
     return {
@@ -83,7 +83,7 @@ def printed_json(printed: Printed) -> dict[str, Any]:
     }
 
 
-def show_verified(console: Console, found: Verified) -> None:
+def show_verified(console: Console, found: Verified, *, with_findings: bool = True) -> None:
     """The summary: computed against printed, then the other ways, then the findings."""
     from rich.table import Table
 
@@ -121,7 +121,7 @@ def show_verified(console: Console, found: Verified) -> None:
             + (f"tips at {other.tilt_deg:.1f}°" if other.tilt_deg >= 0 else "falls by itself"),
         )
     console.print(facts)
-    if found.findings:
+    if with_findings and found.findings:
         show_findings(console, found.findings)
     for warning in found.warnings:
         console.print(f"The slicer says: {warning}")
