@@ -64,12 +64,13 @@ def verify(
     """
     from printprep.check.registry import sorted_findings
     from printprep.slicer.process import find_slicer
-    from printprep.slicer.verify_others import slice_others
+    from printprep.slicer.verify_others import model_of, slice_others
     from printprep.slicer.verify_part import carried_part
     from printprep.slicer.verify_rules import compare, support_inside
 
     with progress.stage("Reading the part"):
         carried = carried_part(part)
+        model = None if compare_with is None else model_of(carried, compare_with)
     settings = settings_for(carried, load)
     program = find_slicer(slicer)
     findings: list[Finding] = []
@@ -86,9 +87,9 @@ def verify(
                 )
             findings += support_inside(supported)
         others: tuple[Other, ...] = ()
-        if compare_with is not None:
+        if model is not None:
             with progress.stage("Slicing the model as it would be printed otherwise"):
-                others = slice_others(program, carried, compare_with, settings, load, folder)
+                others = slice_others(program, carried, model, settings, load, folder)
     return Verified(
         part=carried,
         slicer=program.name,

@@ -17,6 +17,8 @@ import numpy as np
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from printprep.profiles import Profile
     from printprep.slicer.process import Slicer
     from printprep.slicer.verify_part import CarriedPart
@@ -38,23 +40,13 @@ class Other:
     tilt_deg: float
 
 
-def slice_others(
-    program: Slicer,
-    part: CarriedPart,
-    model: Path,
-    settings: Mapping[str, str],
-    load: Path | None,
-    folder: Path,
-) -> tuple[Other, ...]:
-    """Slice the model as it is, placed as the part is, once for each way.
+def model_of(part: CarriedPart, model: Path) -> Manifold:
+    """The model the part was made of, as a solid where the part is.
 
-    Raises UsageError where the model is not the one the part was made of, or the file's errors.
+    Raises UsageError where it is another model, else what reading and repairing it raise.
     """
-    from printprep.gcode.measure import measure_gcode
     from printprep.mesh.read import read_mesh
     from printprep.mesh.repair import repair
-    from printprep.mesh.write import to_bytes
-    from printprep.slicer.verify_rules import tilt_as_printed
     from printprep.types import Model
 
     raw = read_mesh(model)
@@ -62,9 +54,27 @@ def slice_others(
     from_raw = part.placement @ np.linalg.inv(raw.from_file)
     vertices = raw.vertices @ from_raw[:3, :3].T + from_raw[:3, 3]
     _refuse_another(part, model, vertices.max(axis=0) - vertices.min(axis=0))
-    solid = repair(Model(vertices, raw.faces, from_raw, raw.name))
+    return repair(Model(vertices, raw.faces, from_raw, raw.name)).manifold
+
+
+def slice_others(
+    program: Slicer,
+    part: CarriedPart,
+    model: Manifold,
+    settings: Mapping[str, str],
+    load: Path | None,
+    folder: Path,
+) -> tuple[Other, ...]:
+    """Slice the model as it is, placed as the part is, once for each way.
+
+    Raises ToolError where the slicer fails.
+    """
+    from printprep.gcode.measure import measure_gcode
+    from printprep.mesh.write import to_bytes
+    from printprep.slicer.verify_rules import tilt_as_printed
+
     stl = folder / "model.stl"
-    stl.write_bytes(to_bytes(solid.manifold, ".stl"))
+    stl.write_bytes(to_bytes(model, ".stl"))
     gcode = folder / "other.gcode"
     others = []
     for way, infill in _WAYS:
@@ -91,7 +101,8 @@ def _count(thick_mm: float, each_mm: float) -> int:
 
 
 def _refuse_another(part: CarriedPart, model: Path, size_mm: np.ndarray) -> None:
-    base_mm = 2 * part.profile.stability.base_growth_max_mm
+    growth_mm = 2 * part.profile.stability.base_growth_max_mm
+    base_mm = np.array([growth_mm, growth_mm, 0.0])  # grows the footprint only
     room = part.size_mm - size_mm
     if (room < -_SLACK_MM).any() or (room > base_mm + _SLACK_MM).any():
         sizes = " × ".join(f"{side:.1f}" for side in size_mm)

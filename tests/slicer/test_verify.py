@@ -1,0 +1,266 @@
+"""Computed against printed: agreement on a block, and every way to differ is found."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from verify_parts import SIDE, hollow_block, write_block, write_model
+
+from printprep.cli.run import run
+from printprep.errors import InputError, ToolError, UsageError
+from printprep.gcode.printed import Printed, Said
+from printprep.slicer.export import profile_ini
+from printprep.slicer.verify import Verified, verify
+from printprep.slicer.verify_part import CarriedPart, carried_part
+from printprep.slicer.verify_rules import compare, support_inside
+from printprep.threemf.read import ATTACHMENT
+from printprep.types import Lean
+
+slicing = pytest.mark.slicer
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_block(tmp_path_factory.mktemp("block"))
+
+
+@pytest.fixture(scope="module")
+def verified(block: Path, prusa_slicer: Path, tmp_path_factory: pytest.TempPathFactory) -> Verified:
+    model = write_model(tmp_path_factory.mktemp("model"))
+    return verify(block, slicer=prusa_slicer, compare_with=model)
+
+
+def test_a_part_carries_its_figures_where_the_slicer_sees_it(block: Path):
+    part = carried_part(block)
+    result = hollow_block()
+    assert part.mass_g == pytest.approx(result.mass_g, rel=1e-5)
+    assert part.tilt_deg == pytest.approx(result.stability.tilt_deg, abs=1e-4)
+    assert part.lean == result.lean
+    # The bed is 250 × 210 mm, its middle is the model's x = y = 0
+    np.testing.assert_allclose(part.contact_polygon_mm.mean(axis=0), [125, 105], atol=1e-3)
+    np.testing.assert_allclose(part.size_mm, SIDE, atol=1e-3)
+    assert part.contact_area_mm2 == pytest.approx(SIDE**2, rel=1e-4)
+    at = part.placement @ [SIDE / 2, SIDE / 2, SIDE / 2, 1]
+    np.testing.assert_allclose(at[:3], [125 + SIDE / 2, 105 + SIDE / 2, SIDE], atol=1e-3)
+    assert len(part.cavities) == 1
+    low, high = np.reshape(part.cavities[0].bounding_box(), (2, 3))
+    assert (low > [125 - SIDE / 2, 105 - SIDE / 2, 0]).all()
+    assert (high < [125 + SIDE / 2, 105 + SIDE / 2, SIDE]).all()
+
+
+@slicing
+def test_the_print_of_a_block_is_what_was_computed(verified: Verified):
+    assert verified.findings == ()
+    part, printed = verified.part, verified.printed
+    assert printed.mass_g == pytest.approx(part.mass_g, rel=0.04)
+    np.testing.assert_allclose(printed.centre_of_mass_mm, part.centre_mm, atol=0.3)
+    assert printed.tilt_deg == pytest.approx(part.tilt_deg, abs=1.0)
+    assert printed.contact_area_mm2 == pytest.approx(SIDE**2, rel=0.01)
+    assert printed.in_cavities_mm3 == 0.0
+    assert printed.filament_mm3 == pytest.approx(printed.said.filament_mm3, rel=0.005)
+    assert verified.supported is not None
+    assert verified.supported.support_in_cavities_mm3 == 0.0
+    assert verified.slicer.startswith("PrusaSlicer ")
+
+
+@slicing
+def test_what_else_the_model_could_be(verified: Verified):
+    gyroid, lightning = verified.others
+    assert (gyroid.way, lightning.way) == ("15 % gyroid", "lightning infill")
+    assert gyroid.mass_g > lightning.mass_g > 0.8 * verified.printed.mass_g
+    for other in verified.others:
+        assert other.seconds is not None and other.seconds > 60
+        assert other.tilt_deg == pytest.approx(45.0, abs=3.0)  # a cube about its edge
+
+
+@slicing
+def test_closing_holes_fills_a_cavity_and_is_found(block: Path, prusa_slicer: Path, tmp_path: Path):
+    config = tmp_path / "mine.ini"
+    text = profile_ini(hollow_block().profile).replace("slicing_mode = regular", "")
+    config.write_text(f"{text}slicing_mode = close_holes\n", encoding="utf-8")
+    found = verify(block, slicer=prusa_slicer, load=config)
+    assert {"filled-cavity", "printed-mass"} <= {item.rule for item in found.findings}
+    filled = next(item for item in found.findings if item.rule == "filled-cavity")
+    assert filled.severity == "error"
+    assert filled.value > 1000
+    low, high = np.reshape(found.part.cavities[0].bounding_box(), (2, 3))
+    assert (low < filled.at_mm).all() and (filled.at_mm < high).all()
+
+
+@slicing
+def test_supports_that_go_inside_are_found(prusa_slicer: Path, tmp_path: Path):
+    config = tmp_path / "mine.ini"  # the block's flat ceiling would be bridged
+    text = profile_ini(hollow_block("0").profile) + "dont_support_bridges = 0\n"
+    config.write_text(text, encoding="utf-8")
+    found = verify(write_block(tmp_path, buildplate_only="0"), slicer=prusa_slicer, load=config)
+    assert [item.rule for item in found.findings] == ["support-in-cavity"]
+    assert found.findings[0].value > 100
+    assert found.printed.in_cavities_mm3 == 0.0
+
+
+@slicing
+@pytest.mark.parametrize("said", ["filament_density = 0\n", ""])
+def test_a_config_without_a_density_takes_the_profiles(
+    block: Path, prusa_slicer: Path, tmp_path: Path, said: str
+):
+    config = tmp_path / "mine.ini"
+    text = profile_ini(hollow_block().profile)
+    lines = [line for line in text.splitlines() if not line.startswith("filament_density")]
+    config.write_text("\n".join(lines) + "\n" + said, encoding="utf-8")
+    found = verify(block, slicer=prusa_slicer, load=config)
+    assert found.printed.mass_g == pytest.approx(found.part.mass_g, rel=0.04)
+    assert found.printed.assumed == ()
+
+
+def as_printed(part: CarriedPart, **changes: object) -> Printed:
+    """A print that is exactly what was computed, but for the changes."""
+    x, y, z = (float(value) for value in part.centre_mm)
+    same = Printed(
+        mass_g=part.mass_g,
+        volume_mm3=part.mass_g / 1.24e-3,
+        centre_of_mass_mm=(x, y, z),
+        inertia_g_mm2=np.eye(3),
+        contact_polygon_mm=part.contact_polygon_mm,
+        contact_area_mm2=part.contact_area_mm2,
+        tilt_deg=float(part.tilt_deg or 0.0),
+        feature_mass_g={},
+        feature_volume_mm3={},
+        left_out=(),
+        filament_mm3=1e4,
+        in_cavities_mm3=0.0,
+        support_in_cavities_mm3=0.0,
+        in_cavities_at_mm=None,
+        assumed=(),
+        said=Said("PrusaSlicer 2.5.0", 1e4, None, None, {}),
+    )
+    return replace(same, **changes)
+
+
+def test_each_difference_has_its_rule_and_its_tolerance(block: Path):
+    part = carried_part(block)
+    assert list(compare(part, as_printed(part))) == []
+    x, y, z = part.centre_mm
+    shrunk = 125 + (part.contact_polygon_mm - [125, 105]) * 0.9 + [0, -20]
+    cases = [
+        ({"mass_g": part.mass_g * 1.039}, None),
+        ({"mass_g": part.mass_g * 1.041}, "printed-mass"),
+        ({"mass_g": part.mass_g * 0.959}, "printed-mass"),
+        ({"centre_of_mass_mm": (x, y, z + 0.49)}, None),
+        ({"centre_of_mass_mm": (x, y, z - 0.51)}, "printed-centre-of-mass"),
+        ({"contact_polygon_mm": shrunk}, "printed-contact"),
+        ({"in_cavities_mm3": 0.01}, "filled-cavity"),
+        ({"filament_mm3": 1.0049e4}, None),
+        ({"filament_mm3": 1.0051e4}, "filament-count"),
+        ({"tilt_deg": 8.9}, "printed-tilt"),
+        ({"tilt_deg": -3.0}, "printed-tilt"),
+        ({"tilt_deg": 9.1}, None),
+    ]
+    for change, rule in cases:
+        found = [item.rule for item in compare(part, as_printed(part, **change))]
+        assert found == ([] if rule is None else [rule]), change
+    fills = as_printed(part, support_in_cavities_mm3=0.01)
+    assert [item.rule for item in support_inside(fills)] == ["support-in-cavity"]
+    assert list(support_inside(as_printed(part))) == []
+
+
+def test_a_lean_out_of_reach_or_toward_one_side(block: Path):
+    part = carried_part(block)
+    low = replace(part, lean=Lean(30.0), tilt_deg=5.0)
+    assert list(compare(low, as_printed(low, tilt_deg=4.1))) == []
+    assert [item.rule for item in compare(low, as_printed(low, tilt_deg=3.9))] == ["printed-tilt"]
+    # Toward a corner a cube stands to atan √2, however soon it tips over an edge
+    diagonal = replace(part, lean=Lean(53.0, 45.0), tilt_deg=54.7)
+    assert list(compare(diagonal, as_printed(diagonal))) == []
+    edge = replace(part, lean=Lean(53.0, 0.0), tilt_deg=53.0)
+    assert [item.rule for item in compare(edge, as_printed(edge))] == ["printed-tilt"]
+
+
+def test_bodies_that_do_not_touch_are_not_judged_as_one(block: Path):
+    part = replace(carried_part(block), bodies=2)
+    found = list(compare(part, as_printed(part, tilt_deg=-5.0)))
+    assert [(item.rule, item.severity) for item in found] == [("printed-tilt", "info")]
+
+
+def rewritten(source: Path, target: Path, figures: bytes | None) -> Path:
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for entry in old.infolist():
+            if entry.filename != ATTACHMENT:
+                new.writestr(entry, old.read(entry))
+            elif figures is not None:
+                new.writestr(entry, figures)
+    return target
+
+
+@pytest.mark.parametrize(
+    ("figures", "words"),
+    [(None, "carries no"), (b"{", "no JSON"), (b"[]", "no figures"), (b"{}", "not those of")],
+)
+def test_files_that_are_not_ours(block: Path, tmp_path: Path, figures: bytes | None, words: str):
+    with pytest.raises(InputError, match=words) as caught:
+        carried_part(rewritten(block, tmp_path / "other.3mf", figures))
+    assert "other.3mf" in caught.value.message
+    assert caught.value.hint is not None and "printprep hollow" in caught.value.hint
+
+
+def test_a_model_is_no_part(tmp_path: Path):
+    with pytest.raises(InputError, match="no 3MF"):
+        carried_part(write_model(tmp_path))
+    with pytest.raises(InputError, match="no such file"):
+        carried_part(tmp_path / "none.3mf")
+
+
+@slicing
+def test_another_model_is_not_compared_with(block: Path, prusa_slicer: Path, tmp_path: Path):
+    import trimesh
+
+    other = tmp_path / "ball.stl"
+    trimesh.creation.icosphere(radius=9).export(other)
+    with pytest.raises(UsageError, match="not the model"):
+        verify(block, slicer=prusa_slicer, compare_with=other)
+
+
+def test_a_missing_slicer_is_a_tool_error(block: Path, tmp_path: Path):
+    with pytest.raises(ToolError):
+        verify(block, slicer=tmp_path / "none")
+
+
+@slicing
+def test_the_command(block: Path, prusa_slicer: Path, tmp_path: Path, capsys):
+    assert run(["verify", str(block), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["findings"] == [] and said["part"] == str(block)
+    assert abs(said["mass_off"]) < 0.04
+    assert said["printed"]["tilt_deg"] == pytest.approx(said["computed"]["tilt_deg"], abs=1)
+    assert said["support_in_cavities_mm3"] == 0
+    assert run(["verify", str(block)]) == 0
+    text = capsys.readouterr().out
+    assert "in cavities" in text and "nothing" in text and "PrusaSlicer" in text
+    lying = tmp_path / "lying.3mf"
+    with zipfile.ZipFile(block) as source:
+        figures = json.loads(source.read(ATTACHMENT))
+    figures["mass_g"] *= 1.2
+    rewritten(block, lying, json.dumps(figures).encode())
+    assert run(["verify", str(lying), "-q"]) == 0
+    assert "weighs" in capsys.readouterr().err
+    assert run(["verify", str(lying), "--fail-on", "warning"]) == 1
+    assert run(["verify", str(tmp_path / "none.3mf"), "--json"]) == 3
+
+
+@slicing
+def test_hollow_verifies_what_it_writes(prusa_slicer: Path, tmp_path: Path, capsys):
+    model, part = write_model(tmp_path), tmp_path / "out.3mf"
+    common = ["hollow", str(model), "--resolution", "32", "--base", "never"]
+    assert run([*common, "-o", str(part), "--verify", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["verified"]["part"] == str(part)
+    assert said["verified"]["printed"]["in_cavities_mm3"] == 0
+    plain = tmp_path / "plain.3mf"
+    assert run([*common, "-o", str(plain), "-q"]) == 0
+    assert plain.read_bytes() == part.read_bytes()
+    assert run([*common, "-o", str(tmp_path / "out.stl"), "--verify"]) == 2
+    assert run([*common, "-p", "sls-pa12", "-o", str(part), "--verify"]) == 2
