@@ -86,7 +86,8 @@ def explore(
     from printprep.settle import carve
     from printprep.stand.stability import stability
     from printprep.types import Lean
-    from printprep.voxel.domain import build_interior
+    from printprep.voxel.depth import measure_depths
+    from printprep.voxel.domain import weigh_interior
 
     if not 2 <= count <= 200:
         raise UsageError(f"A curve of {count} points is not between 2 and 200.")
@@ -96,7 +97,7 @@ def explore(
     with progress.stage("repair"):
         solid = repair(placed)
     with progress.stage("voxelize"):
-        interior = build_interior(
+        depths = measure_depths(
             solid,
             resolution=resolution,
             wall_mm=settings.wall_mm,
@@ -105,7 +106,9 @@ def explore(
         )
     grams = settings.material.density_g_cm3 / 1000
     first_layer = settings.printer.first_layer_mm
-    program = Program(solid.manifold, interior, settings)
+    with progress.stage("cavity"):
+        room = cavity_surface(solid.manifold, depths.field, settings.wall_mm)
+    program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
     with progress.stage("solve"):
         farthest = program.choose(base, Lean(MOST_DEG))
         reachable = min(farthest.reached, MOST_DEG)
@@ -119,7 +122,6 @@ def explore(
         return Mark(name, part.manifold.volume() * grams, standing.tilt_deg)
 
     with progress.stage("cavity"):
-        room = cavity_surface(solid.manifold, interior.field, settings.wall_mm)
         empty = (None,) * len(program.bodies)
         # The paper's B is a base too: its objective is given the one that the profile's lean takes.
         footed = program.choose(base, Lean(settings.stability.lean_deg))

@@ -66,7 +66,8 @@ def hollow(
     from printprep.stand.lean import lean_of
     from printprep.stand.poses import stable_poses
     from printprep.stand.stability import stability
-    from printprep.voxel.domain import build_interior
+    from printprep.voxel.depth import measure_depths
+    from printprep.voxel.domain import weigh_interior
 
     settings = load_profile(profile, overrides or {})
     asked = lean_of(lean, settings.stability.lean_deg)
@@ -79,18 +80,18 @@ def hollow(
         if pose is not None:
             placed, solid = _posed(placed, solid, pose)
     with clock.stage("voxelize"):
-        interior = build_interior(
+        depths = measure_depths(
             solid,
             resolution=resolution,
             wall_mm=settings.wall_mm,
             min_feature_mm=settings.min_feature_mm,
             margin_mm=settings.stability.base_growth_max_mm,
         )
-    with clock.stage("base"):
-        program = Program(solid.manifold, interior, settings)
-        choice = program.choose(base, asked)
     with clock.stage("cavity"):
-        room = cavity_surface(solid.manifold, interior.field, settings.wall_mm)
+        room = cavity_surface(solid.manifold, depths.field, settings.wall_mm)
+    with clock.stage("base"):
+        program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
+        choice = program.choose(base, asked)
     with clock.stage("solve"):
         settle = settle_paper if objective == "paper" else settle_lean
         density, part, standing = settle(solid, room, program, choice, asked)

@@ -13,14 +13,14 @@ from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import cavity_surface
 from printprep.mesh.measure import arrays, distance_mm
 from printprep.types import Plane
-from printprep.voxel.domain import build_interior
+from printprep.voxel.depth import measure_depths
 
 
 def room_in(manifold: Manifold, wall: float, feature: float = 1.0) -> Manifold:
-    interior = build_interior(
+    depths = measure_depths(
         solids.solid(manifold), resolution=48, wall_mm=wall, min_feature_mm=feature
     )
-    return cavity_surface(manifold, interior.field, wall)
+    return cavity_surface(manifold, depths.field, wall)
 
 
 def thinnest(outside: Manifold, cavity: Manifold) -> float:

