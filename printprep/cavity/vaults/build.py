@@ -1,0 +1,121 @@
+"""From a room for cavities to one whose every ceiling is carried from inside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.cavity.vaults.capitals import cover
+from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
+from printprep.cavity.vaults.columns import raise_columns
+from printprep.cavity.vaults.dexels import Dexels
+from printprep.cavity.vaults.feet import set_feet
+from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.landings import Landings
+from printprep.cavity.vaults.members import Members
+from printprep.cavity.vaults.mend import mending
+from printprep.cavity.vaults.solids import capital_solids, column_solids
+from printprep.mesh.measure import bodies, together
+from printprep.overhang.limits import Acceptance, acceptance
+from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
+
+if TYPE_CHECKING:
+
+    from manifold3d import Manifold
+
+    from printprep.profiles import Profile
+
+DEXEL_MM = 0.35
+# Faces may move so much when the finished cavity is simplified: a fiftieth of the slicer's off.
+SIMPLIFY_MM = 0.003
+# The finished cavity is judged with layers that begin at these shares of a layer.
+PHASES = (0.0, 1 / 3, 2 / 3)
+MOST_MENDINGS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Vaults:
+    """What it takes to print a room without support.
+
+    cavity : the room without the vaults;  solids : the vaults, room minus cavity.
+    samples, capitals, columns : how many;  added_mm3 : volume of the solids.
+    unsupported_mm2, islands : what the acceptance rule still flags, over all of its phases.
+    """
+
+    cavity: Manifold
+    solids: Manifold
+    samples: int
+    capitals: int
+    columns: int
+    added_mm3: float
+    unsupported_mm2: float
+    islands: int
+
+
+def vaulted(room: Manifold, profile: Profile) -> Vaults:
+    """Carry every ceiling of a room by solids inside it.
+
+    Parameters
+    ----------
+    room : what may be cavity, in printing position; thick walls around it.
+    profile : an fdm profile: layers, lines, least feature.
+
+    Raises UsageError for a profile without a nozzle.
+    """
+    from manifold3d import Manifold
+
+    members, rule = Members.of(profile), acceptance(profile)
+    samples = ceiling_samples(room, members.theta_deg)
+    capitals = cover(samples, members, SPACING_MM**2)
+    forest = Forest()
+    if len(samples):
+        dexels = Dexels.of(room, DEXEL_MM)
+        landings = Landings.of(dexels, members, float(capitals.node_mm[:, 2].max()))
+        raise_columns(capitals.node_mm, dexels, landings, members, forest)
+        set_feet(forest, dexels, members)
+    count, columns = len(capitals.node_mm), forest.columns
+    cavity = _without(room, capitals, forest, members)
+    flagged = _flagged(cavity, rule)
+    for _ in range(MOST_MENDINGS):
+        if not flagged:
+            break
+        capitals, forest = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM)
+        count, columns = count + len(capitals.node_mm), columns + forest.columns
+        cavity = _without(cavity, capitals, forest, members)
+        flagged = _flagged(cavity, rule)
+    left = Unsupported(tuple(flagged))
+    solids = room - cavity if count else Manifold()
+    added = float(room.volume() - cavity.volume())
+    return Vaults(
+        cavity, solids, len(samples), count, columns, added, left.area_mm2, left.islands
+    )
+
+
+def _without(room: Manifold, capitals: Capitals, forest: Forest, members: Members) -> Manifold:
+    """The room less what is built in it and what is then too small to keep."""
+    from manifold3d import Manifold, OpType
+
+    pieces = capital_solids(capitals, members) + column_solids(forest, members)
+    if pieces:
+        room = room - Manifold.batch_boolean(pieces, OpType.Add)
+    return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
+
+
+def _flagged(cavity: Manifold, rule: Acceptance) -> list[Flagged]:
+    """Patches at every phase."""
+    found = (unsupported_ceilings(cavity, rule, phase) for phase in PHASES)
+    return [patch for every in found for patch in every.patches]
+
+
+def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:
+    """The cavity without pieces smaller than a ball of the least feature: those print solid."""
+    from manifold3d import Manifold
+
+    least = np.pi / 6 * thickness_mm**3
+    pieces = bodies(cavity)
+    kept = [piece for piece in pieces if piece.volume() >= least]
+    if len(kept) == len(pieces):
+        return cavity
+    return together(kept) if kept else Manifold()

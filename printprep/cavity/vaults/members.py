@@ -1,0 +1,73 @@
+"""What vaults are built of: how steep, how thick, how slender; and the volume of a column.
+
+Notation: θ steepest overhang from the vertical, m least thickness across an axis, ℓ length of the
+longest way up from a place to a tip, φ ≤ θ lean of a column, S slenderness.
+
+A column's section is a horizontal disc.  Leaning, it is thinner across its axis by cos φ, so its
+radius is t(ℓ) / (2 cos φ) where t(ℓ) = max(m, ℓ / S) is its thickness across.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.overhang.limits import steepest_overhang_deg
+
+if TYPE_CHECKING:
+    from printprep.profiles import Profile
+    from printprep.types import Float
+
+# Nowhere is more of a tree above than so many times its thickness there.  Slicers' tree supports
+# widen by 5° of diameter over length, which comes to 2 tan 2.5° = 1/11.5 of it.
+SLENDERNESS = 12.0
+
+
+@dataclass(frozen=True)
+class Members:
+    """theta_deg : steepest overhang from the vertical;  thickness_mm : least, across any axis."""
+
+    theta_deg: float
+    thickness_mm: float
+    slenderness: float = SLENDERNESS
+
+    @staticmethod
+    def of(profile: Profile) -> Members:
+        """As the profile asks.  Raises UsageError where it has no nozzle."""
+        return Members(steepest_overhang_deg(profile), profile.min_feature_mm)
+
+    @property
+    def tan(self) -> float:
+        return math.tan(math.radians(self.theta_deg))
+
+    @property
+    def radius_mm(self) -> float:
+        """Of a capital's lower end, and of an upright column's upper end."""
+        return self.thickness_mm / 2
+
+    @property
+    def leaning_radius_mm(self) -> float:
+        """Of the upper end of a column that leans as much as it may."""
+        return self.radius_mm / math.cos(math.radians(self.theta_deg))
+
+    def across_mm(self, length_mm: Float) -> Float:
+        """Half the thickness across the axis, a length below the farthest tip."""
+        half: Float = np.maximum(self.radius_mm, np.asarray(length_mm) / (2 * self.slenderness))
+        return half
+
+    def volume_mm3(self, above_mm: Float, length_mm: Float) -> Float:
+        """Of columns ``length_mm`` long that carry a tree of ``above_mm``."""
+        above = np.asarray(above_mm)
+        result: Float = self._from_tip(above + length_mm) - self._from_tip(above)
+        return result
+
+    def _from_tip(self, length: Float) -> Float:
+        slender = 2 * self.slenderness * self.radius_mm
+        thin = np.minimum(length, slender)
+        wide = np.maximum(length, slender)
+        cone = (wide**3 - slender**3) / (12 * self.slenderness**2)
+        result: Float = math.pi * (self.radius_mm**2 * thin + cone)
+        return result

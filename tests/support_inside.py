@@ -1,0 +1,79 @@
+"""What the real slicer prints as support inside a cavity: slice with supports on, read the G-code.
+
+Not printprep's own opinion: PrusaSlicer decides where, this only adds up.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from manifold3d import Manifold
+from numpy.typing import NDArray
+
+from printprep.mesh.measure import arrays, winding
+from printprep.mesh.write import to_bytes
+from printprep.mesh.written import as_written
+from printprep.profiles import Profile
+from printprep.slicer.export import FILAMENT_DIAMETER_MM, profile_settings
+from printprep.slicer.process import find_slicer
+
+Float = NDArray[np.float64]
+
+
+def support_inside_g(
+    outside: Manifold, cavity: Manifold, profile: Profile, threshold_deg: float
+) -> float:
+    """Grams of support material that PrusaSlicer puts into a cavity.
+
+    threshold_deg : support_material_threshold; 0 is the automatic one.
+    """
+    x, y, _ = profile.printer.bed_mm
+    part = as_written(outside - cavity).translate((x / 2, y / 2, 0))
+    settings = {
+        **profile_settings(profile),
+        "fill_density": "15%",  # quicker than solid; supports do not depend on it
+        "fill_pattern": "grid",
+        "support_material": "1",
+        "support_material_auto": "1",
+        "support_material_threshold": f"{threshold_deg:g}",
+        "support_material_buildplate_only": "0",
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        model, gcode = Path(folder) / "part.stl", Path(folder) / "part.gcode"
+        model.write_bytes(to_bytes(part, ".stl"))
+        find_slicer().slice(model, gcode, settings)
+        middles, filament_mm = support_moves(gcode)
+    middles = middles - [x / 2, y / 2, profile.printer.layer_height_mm / 2]
+    inside = winding(middles, *arrays(cavity)) > 0.5
+    area = math.pi / 4 * FILAMENT_DIAMETER_MM**2
+    return float(filament_mm[inside].sum() * area * profile.material.density_g_cm3 / 1000)
+
+
+def support_moves(gcode: Path) -> tuple[Float, Float]:
+    """(n, 3) middles of the extruding moves of support, and (n,) filament each takes, mm."""
+    x = y = z = e = 0.0
+    support = relative = False
+    middles, filament = [], []
+    for line in gcode.read_text(encoding="utf-8").splitlines():
+        if line.startswith(";TYPE:"):
+            support = line.startswith(";TYPE:Support material")
+        code, _, rest = line.partition(";")[0].partition(" ")
+        if code in ("M82", "M83"):
+            relative = code == "M83"
+        elif code == "G92":
+            e = next((float(word[1:]) for word in rest.split() if word[0] == "E"), e)
+        elif code in ("G0", "G1"):
+            words = {word[0]: float(word[1:]) for word in rest.split()}
+            new_x, new_y, z = words.get("X", x), words.get("Y", y), words.get("Z", z)
+            used = 0.0
+            if "E" in words:
+                used = words["E"] if relative else words["E"] - e
+                e = words["E"]
+            if support and used > 0 and (new_x, new_y) != (x, y):
+                middles.append(((x + new_x) / 2, (y + new_y) / 2, z))
+                filament.append(used)
+            x, y = new_x, new_y
+    return np.array(middles).reshape(-1, 3), np.array(filament)
