@@ -39,6 +39,8 @@ class Printed:
     file says;  contact_area_mm2 : of the beads' union.
     tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself.
     feature_mass_g, feature_volume_mm3 : by feature, what is left out too.
+    bounds_mm : (2, 3) low and high corners of what stays, whole beads; z of the machine.
+    objects : labels of the objects printed, where the file labels them.
     filament_mm3 : all of it but custom G-code: what slicers count as filament used.
     in_cavities_mm3, support_in_cavities_mm3 : deposited inside the cavities given, and the support
     among it;  in_cavities_at_mm : a place of the first, or None.
@@ -55,6 +57,8 @@ class Printed:
     feature_mass_g: Mapping[str, float]
     feature_volume_mm3: Mapping[str, float]
     left_out: tuple[str, ...]
+    bounds_mm: Float
+    objects: tuple[str, ...]
     filament_mm3: float
     in_cavities_mm3: float
     support_in_cavities_mm3: float

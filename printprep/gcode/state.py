@@ -22,6 +22,10 @@ _PRODUCER = re.compile(
     re.IGNORECASE,
 )
 _ORCA_HEAD = re.compile(rb";\s*(BambuStudio|OrcaSlicer)\s+([\d.]+)")
+_OBJECT = re.compile(
+    rb";\s*printing object (.+)|EXCLUDE_OBJECT_START NAME=(\S+)|M486 S(\d+)", re.IGNORECASE
+)
+_OBJECTS_MAX = 1000
 _NUMBER = re.compile(rb"[-+]?\d*\.?\d+")
 _CODE = re.compile(rb"([GMT])0*(\d+)(?![\d.])", re.IGNORECASE)
 _VOLUMETRIC = re.compile(rb"[DS]\s*([\d.]+)", re.IGNORECASE)
@@ -49,13 +53,15 @@ class State:
 class Listener:
     """Follows the lines that are not moves; ``state`` is what holds after the last one heard.
 
-    settings : what "key = value" comments say, the last one counts;  producer : the slicer.
+    settings : what "key = value" comments say, the last one counts;  producer : the slicer;
+    labelled : whether features are named at all;  objects : labels of what is printed.
     """
 
     state: State = field(default_factory=State)
     settings: dict[str, str] = field(default_factory=dict)
     producer: str | None = None
     labelled: bool = False
+    objects: set[str] = field(default_factory=set)
 
     def hear_all(
         self, lines: Iterable[tuple[int, bytes]]
@@ -87,6 +93,7 @@ class Listener:
         """Take in a line; True where the state is another after it."""
         if line.startswith(b";"):
             return self._comment(line)
+        self._object(line)
         found = _CODE.match(line)
         if found is None:
             return False
@@ -109,7 +116,14 @@ class Listener:
             return self._become(width_mm=value)
         return self._become(height_mm=value)
 
+    def _object(self, line: bytes) -> None:
+        found = _OBJECT.match(line)
+        if found is not None and len(self.objects) < _OBJECTS_MAX:
+            name = next(part for part in found.groups() if part)
+            self.objects.add(name.decode("utf-8", "replace").strip())
+
     def _said(self, line: bytes) -> None:
+        self._object(line)
         if self.producer is None:
             found = _PRODUCER.search(line) or _ORCA_HEAD.match(line)
             if found is not None:

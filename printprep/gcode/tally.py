@@ -6,7 +6,6 @@ figures behind the moves.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
@@ -14,13 +13,15 @@ import numpy as np
 
 from printprep.errors import InputError
 from printprep.gcode.features import CUSTOM, SUPPORT, UNLABELLED
+from printprep.gcode.filament import Filament, Key
 from printprep.gcode.first_layer import SAME_LAYER_MM, LowestBeads, union_of
+from printprep.gcode.heights import Heights
 from printprep.gcode.inside import Cavities
 from printprep.gcode.moments import COLUMNS, inertia_about_centre, moments_of, sums_by
 from printprep.gcode.paths import Stretches, Walker
 from printprep.gcode.printed import Printed
 from printprep.gcode.said import said_of
-from printprep.gcode.state import Listener, State, numbers
+from printprep.gcode.state import Listener, State
 from printprep.gcode.words import read_rows
 from printprep.stand.contact import contact_of
 
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
     Float = NDArray[np.float64]
 
-_Key = tuple[str, int, bool]  # feature, extruder, volumetric
-
-DIAMETER_MM = 1.75
-DENSITY_G_CM3 = 1.24
-
 
 class Tally:
     """Sums over the pieces heard so far."""
@@ -45,13 +41,15 @@ class Tally:
         self._name = name
         self._cavities = Cavities(cavities) if cavities else None
         self._walker = Walker()
-        self._heights = _Heights(listener)
+        self._heights = Heights(listener)
         self._line = 1
-        self._keys: dict[_Key, int] = {}
+        self._keys: dict[Key, int] = {}
         self._sums = np.zeros((0, COLUMNS))
         self._inside = np.zeros(0)
+        self._low = np.zeros((0, 3))
+        self._high = np.zeros((0, 3))
         self._lowest: list[LowestBeads] = []
-        self._at: dict[_Key, tuple[float, float, float]] = {}
+        self._at: dict[Key, tuple[float, float, float]] = {}
 
     def add(self, piece: bytes) -> None:
         """Take in the next piece, which ends with a line's end."""
@@ -74,6 +72,7 @@ class Tally:
         wide = np.nan_to_num(width)
         moments = moments_of(axis_start, axis_end, made.filament, wide, height)
         self._sums += sums_by(group, moments, len(self._sums))
+        self._reach(group, axis_start, axis_end, wide, height)
         top = made.end_mm[:, 2]
         beads = np.column_stack([made.start_mm[:, :2], made.end_mm[:, :2], top, width, height])
         # Where no width is said it follows from the filament, whose diameter is known at the end
@@ -92,6 +91,14 @@ class Tally:
                 x, y, z = (axis_start[first] + axis_end[first]) / 2
                 self._at.setdefault(keys[index], (float(x), float(y), float(z)))
 
+    def _reach(self, group: Int, start: Float, end: Float, width: Float, height: Float) -> None:
+        half = np.column_stack([width, width, height]) / 2
+        low, high = np.minimum(start, end) - half, np.maximum(start, end) + half
+        for index in np.unique(group):
+            mine = group == index
+            self._low[index] = np.minimum(self._low[index], low[mine].min(axis=0))
+            self._high[index] = np.maximum(self._high[index], high[mine].max(axis=0))
+
     def _group(self, state: State) -> int:
         key = (state.feature, state.tool, state.volumetric)
         return self._keys.setdefault(key, len(self._keys))
@@ -100,6 +107,8 @@ class Tally:
         more = len(self._keys) - len(self._sums)
         self._sums = np.vstack([self._sums, np.zeros((more, COLUMNS))])
         self._inside = np.concatenate([self._inside, np.zeros(more)])
+        self._low = np.vstack([self._low, np.full((more, 3), np.inf)])
+        self._high = np.vstack([self._high, np.full((more, 3), -np.inf)])
         self._lowest += [LowestBeads() for _ in range(more)]
 
     def result(
@@ -109,7 +118,7 @@ class Tally:
         density_g_cm3: float | None,
     ) -> Printed:
         """The whole, once every piece was added.  Raises InputError where nothing is printed."""
-        filament = _Filament(self._listener, diameter_mm, density_g_cm3)
+        filament = Filament(self._listener, diameter_mm, density_g_cm3)
         keys = [self._feature(key) for key in self._keys]
         volumes = np.array([filament.mm3(key) for key in keys])
         grams = np.array([filament.g_cm3(key) for key in keys]) / 1000
@@ -144,6 +153,8 @@ class Tally:
             feature_mass_g=by_feature,
             feature_volume_mm3=_by_feature(keys, in_mm3[:, 0]),
             left_out=tuple(feature for feature in by_feature if feature in left_out),
+            bounds_mm=np.stack([self._low[kept].min(axis=0), self._high[kept].max(axis=0)]),
+            objects=tuple(sorted(self._listener.objects)),
             filament_mm3=float(sum(in_mm3[i, 0] for i, key in enumerate(keys) if key[0] != CUSTOM)),
             in_cavities_mm3=float(inside.sum()),
             support_in_cavities_mm3=float(inside[support].sum()),
@@ -152,7 +163,7 @@ class Tally:
             said=said_of(self._listener),
         )
 
-    def _feature(self, key: _Key) -> _Key:
+    def _feature(self, key: Key) -> Key:
         """Before the first label of a file that has labels comes the printer's start G-code."""
         if key[0] == UNLABELLED and self._listener.labelled:
             return (CUSTOM, *key[1:])
@@ -171,77 +182,7 @@ class Tally:
         return np.concatenate(layers)
 
 
-class _Heights:
-    """Widths and heights of beads; a height nobody says is the layer's."""
-
-    def __init__(self, listener: Listener) -> None:
-        self._listener = listener
-        self._top = 0.0
-        self._height = math.nan
-
-    def bead(self, made: Stretches, states: Sequence[State]) -> tuple[Float, Float]:
-        """(n,) width, NaN where nobody says it, and (n,) height, mm."""
-        width = np.array([state.width_mm for state in states])[made.state]
-        height = np.array([state.height_mm for state in states])[made.state]
-        unsaid = np.isnan(height)
-        if unsaid.any():
-            height[unsaid] = self._by_layer(made.end_mm[unsaid, 2])
-        return width, height
-
-    def _by_layer(self, z: Float) -> Float:
-        """From the step between layers, the first one's from the bed."""
-        starts = np.flatnonzero(np.abs(np.diff(z, prepend=np.nan_to_num(self._top))) > 1e-6)
-        height = np.full(len(z), self._height)
-        nominal = numbers(self._listener.settings, "Layer height")
-        for start in starts.tolist():
-            step = float(z[start]) - self._top
-            self._top = float(z[start])
-            self._height = step if step > 0 else self._top  # lower again: the next object
-            if nominal and not math.isclose(self._top, self._height, abs_tol=1e-6):
-                self._height = min(self._height, nominal[0])
-            height[start:] = self._height
-        return height
-
-
-class _Filament:
-    """What a unit of filament is, in mm³ and grams, by extruder."""
-
-    def __init__(
-        self, listener: Listener, diameter_mm: float | None, density_g_cm3: float | None
-    ) -> None:
-        said = listener.settings
-        self._volumetric = said.get("use_volumetric_e") == "1"
-        assumed = []
-        self._diameters = (diameter_mm,) if diameter_mm else numbers(said, "filament_diameter")
-        if not any(self._diameters):
-            self._diameters = (DIAMETER_MM,)
-            assumed.append(f"Filament of {DIAMETER_MM:g} mm is assumed; the file does not say.")
-        self._densities = (density_g_cm3,) if density_g_cm3 else numbers(said, "filament_density")
-        if not any(self._densities):
-            self._densities = (DENSITY_G_CM3,)
-            assumed.append(
-                f"Filament of {DENSITY_G_CM3:g} g/cm³ is assumed; the file does not say."
-            )
-        self.assumed = tuple(assumed)
-
-    def mm3(self, key: _Key) -> float:
-        """Of one unit of E."""
-        if key[2] or self._volumetric:
-            return 1.0
-        return math.pi / 4 * _of(self._diameters, key[1]) ** 2
-
-    def g_cm3(self, key: _Key) -> float:
-        return _of(self._densities, key[1])
-
-
-def _of(values: Sequence[float], tool: int) -> float:
-    """An extruder's value; where it has none, or 0, the first that is one."""
-    if tool < len(values) and values[tool] > 0:
-        return values[tool]
-    return next(value for value in values if value > 0)
-
-
-def _by_feature(keys: Sequence[_Key], values: Float) -> dict[str, float]:
+def _by_feature(keys: Sequence[Key], values: Float) -> dict[str, float]:
     sums: dict[str, float] = {}
     for key, value in zip(keys, values, strict=True):
         sums[key[0]] = sums.get(key[0], 0.0) + float(value)

@@ -42,6 +42,9 @@ def is_the_cuboid(printed, raft_mm3: float = 0, rtol: float = 1e-6) -> None:
     half_disc = 16 / 2 * math.sin(2 * math.pi / 16) * (WIDTH / 2) ** 2 / 2
     ends = 40 * 2 * half_disc
     assert printed.contact_area_mm2 == pytest.approx(LENGTH * DEPTH + ends, rel=1e-5)
+    expected = [[100 - WIDTH / 2, 100], [120 + WIDTH / 2, 120]]
+    np.testing.assert_allclose(np.ptp(printed.bounds_mm[:, 2]), TALL, atol=1e-9)
+    np.testing.assert_allclose(printed.bounds_mm[:, :2], expected, atol=WIDTH / 2 + 1e-9)
     assert printed.tilt_deg == pytest.approx(math.degrees(math.atan(10 / 5)), abs=0.05)
     assert printed.filament_mm3 == pytest.approx(LENGTH * DEPTH * TALL + raft_mm3, rel=1e-6)
 
@@ -315,3 +318,12 @@ def test_any_moves_weigh_what_a_plain_loop_says(tmp_path_factory, moves, piece: 
     )  # fmt: skip
     expected = centre - np.array([0, 0, bottom])
     np.testing.assert_allclose(printed.centre_of_mass_mm, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "label", ["; printing object {} id:0 copy 0", "EXCLUDE_OBJECT_START NAME={}", "M486 S{}"]
+)
+def test_labelled_objects_are_told_apart(measured, label: str):
+    text = "".join(f"{label.format(i)}\n{beads(layers=2)}" for i in (7, 8, 7))
+    assert len(measured(text + FILAMENT).objects) == 2
+    assert measured(beads() + FILAMENT).objects == ()

@@ -131,6 +131,8 @@ def as_printed(part: CarriedPart, **changes: object) -> Printed:
         feature_mass_g={},
         feature_volume_mm3={},
         left_out=(),
+        bounds_mm=np.array([part.centre_mm - 1, part.centre_mm + 1]),
+        objects=(),
         filament_mm3=1e4,
         in_cavities_mm3=0.0,
         support_in_cavities_mm3=0.0,

@@ -1,0 +1,51 @@
+"""How much filament a unit of E is, and what it weighs, as the file says or is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from printprep.gcode.state import Listener, numbers
+
+DIAMETER_MM = 1.75
+DENSITY_G_CM3 = 1.24
+
+Key = tuple[str, int, bool]  # feature, extruder, volumetric
+
+
+class Filament:
+    """What a unit of filament is, in mm³ and grams, by extruder."""
+
+    def __init__(
+        self, listener: Listener, diameter_mm: float | None, density_g_cm3: float | None
+    ) -> None:
+        said = listener.settings
+        self._volumetric = said.get("use_volumetric_e") == "1"
+        assumed = []
+        self._diameters = (diameter_mm,) if diameter_mm else numbers(said, "filament_diameter")
+        if not any(self._diameters):
+            self._diameters = (DIAMETER_MM,)
+            assumed.append(f"Filament of {DIAMETER_MM:g} mm is assumed; the file does not say.")
+        self._densities = (density_g_cm3,) if density_g_cm3 else numbers(said, "filament_density")
+        if not any(self._densities):
+            self._densities = (DENSITY_G_CM3,)
+            assumed.append(
+                f"Filament of {DENSITY_G_CM3:g} g/cm³ is assumed; the file does not say."
+            )
+        self.assumed = tuple(assumed)
+
+    def mm3(self, key: Key) -> float:
+        """Of one unit of E."""
+        if key[2] or self._volumetric:
+            return 1.0
+        return math.pi / 4 * _of(self._diameters, key[1]) ** 2
+
+    def g_cm3(self, key: Key) -> float:
+        return _of(self._densities, key[1])
+
+
+def _of(values: Sequence[float], tool: int) -> float:
+    """An extruder's value; where it has none, or 0, the first that is one."""
+    if tool < len(values) and values[tool] > 0:
+        return values[tool]
+    return next(value for value in values if value > 0)
