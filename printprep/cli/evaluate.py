@@ -10,7 +10,8 @@ import click
 from printprep.cli.options import json_option
 
 METHODS = (
-    "solid", "shell", "paper", "paper-no-base", "lean", "lean-no-base", "lean-at-paper-tilt",
+    "solid", "shell", "paper", "paper-no-base", "lean", "lean-no-base", "lean-full-base",
+    "lean-at-paper-tilt",
 )  # fmt: skip
 
 _EPILOG = """\b
@@ -77,6 +78,14 @@ Examples:
     help="surface: what the surface passes through is the shell, as in the authors' code. centre: "
     "voxels whose centre is inside, the outermost of them the shell.",
 )
+@click.option(
+    "--base-reach",
+    type=click.Choice(("below", "within")),
+    default="below",
+    show_default=True,
+    help="How far B reaches around the object: below ε voxels, as the paper says, or up to and "
+    "including ε, as its code does.",
+)
 @click.option("--set", "subset", metavar="NAME", help="Of a catalogue, the rows of this set.")
 @click.option(
     "--up",
@@ -105,6 +114,7 @@ def command(
     ablations: bool,
     lean_deg: float,
     solver: Any,
+    base_reach: Any,
     resolution: int,
     voxels: Any,
     workers: int,
@@ -133,6 +143,7 @@ def command(
         resolution=resolution,
         solver=solver,
         lean_deg=lean_deg,
+        base_reach=base_reach,
     )
     models = data_set(source, **which)
     silent = quiet or as_json

@@ -63,8 +63,11 @@ def body_of(
         return _body(domain, domain.shell.astype(np.float64))
     if method.kind == "paper":
         return _body(domain, _paper(domain, method))
-    if method.kind == "lean":
-        found = leanest(domain, method.lean_deg, footprints(domain))
+    if method.kind in ("lean", "lean-full-base"):
+        choices = footprints(domain)
+        if method.kind == "lean-full-base":
+            choices = choices[-1:]
+        found = leanest(domain, method.lean_deg, choices)
         return _leaned(domain, found, method.lean_deg)
     return _at_paper_tilt(domain, method)
 

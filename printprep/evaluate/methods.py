@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from printprep.density.paper_settings import PaperSettings
+from printprep.density.paper_settings import PaperSettings, Reach
 from printprep.errors import UsageError
 
-Kind = Literal["solid", "shell", "paper", "lean", "lean-at-paper-tilt"]
+Kind = Literal["solid", "shell", "paper", "lean", "lean-full-base", "lean-at-paper-tilt"]
 Solver = Literal["plane", "adam"]
 
 LEAN_DEG = 10.0
@@ -22,8 +22,9 @@ LEAN_DEG = 10.0
 class Method:
     """One row of a table.
 
-    title : as the tables say it;  lean_deg : of "lean";  settings : the paper's parameters, of
-    which the other kinds use N, ε, and whether there is a base B.
+    title : as the tables say it;  lean_deg : of the two leans.
+    settings : the paper's parameters, of which the other kinds use N, ε, and whether there is a
+    base B and how far it reaches.
     """
 
     name: str
@@ -36,7 +37,7 @@ class Method:
     def described(self) -> dict[str, Any]:
         """Everything its result depends on, and nothing else, as JSON can hold it."""
         facts: dict[str, Any] = {"kind": self.kind, "settings": asdict(self.settings)}
-        if self.kind == "lean":
+        if self.kind in ("lean", "lean-full-base"):
             facts["lean_deg"] = self.lean_deg
         if self.kind in ("paper", "lean-at-paper-tilt"):
             facts["solver"] = self.solver
@@ -46,6 +47,8 @@ class Method:
 _PLAIN = PaperSettings()
 _NO_BASE = PaperSettings(base=False)
 
+_WIDE = "paper-wide-base"
+
 _MAIN = (
     Method("solid", "solid", "solid", _NO_BASE),
     Method("shell", "shell only", "shell", _NO_BASE),
@@ -53,6 +56,7 @@ _MAIN = (
     Method("paper-no-base", "paper's objective, without B", "paper", _NO_BASE),
     Method("lean", "lightest at {lean:g}° lean, B where it helps", "lean", _PLAIN),
     Method("lean-no-base", "lightest at {lean:g}° lean, without B", "lean", _NO_BASE),
+    Method("lean-full-base", "lightest at {lean:g}° lean, with all of B", "lean-full-base", _PLAIN),
     Method(
         "lean-at-paper-tilt",
         "lightest at the paper's own tilt angle, B where it helps",
@@ -71,12 +75,7 @@ _ABLATIONS = (
     Method("paper-no-smoothing", "without smoothing", "paper", PaperSettings(smoothing=False)),
     Method("paper-epsilon-1", "ε = 1", "paper", PaperSettings(epsilon=1)),
     Method("paper-epsilon-3", "ε = 3", "paper", PaperSettings(epsilon=3)),
-    Method(
-        "paper-wide-base",
-        "B up to and including ε, as the code has it",
-        "paper",
-        PaperSettings(base_reach="within"),
-    ),
+    Method(_WIDE, "B up to and including ε, as the code has it", "paper", _PLAIN),
 )
 
 MAIN = tuple(method.name for method in _MAIN)
@@ -91,8 +90,11 @@ def methods(
     resolution: int = 64,
     solver: Solver = "plane",
     lean_deg: float = LEAN_DEG,
+    base_reach: Reach = "below",
 ) -> tuple[Method, ...]:
     """The methods of these names, then, if asked for, the ablations that are not among them.
+
+    base_reach : of B, see `PaperSettings`; but that of "paper-wide-base" is its own.
 
     Raises UsageError for a name that is not known, none at all, or a lean outside [0, 90).
     """
@@ -111,7 +113,11 @@ def methods(
         replace(
             known[name],
             title=known[name].title.format(lean=lean_deg),
-            settings=replace(known[name].settings, resolution=resolution),
+            settings=replace(
+                known[name].settings,
+                resolution=resolution,
+                base_reach="within" if name == _WIDE else base_reach,
+            ),
             solver=solver,
             lean_deg=lean_deg,
         )

@@ -25,7 +25,12 @@ _VOXELS = {
     "surface": "every voxel the surface passes through in the shell",
     "centre": "voxels whose centre is inside, the outermost in the shell",
 }
-_PAIRS = (("lean", "paper"), ("lean-at-paper-tilt", "paper"), ("lean-no-base", "paper-no-base"))
+_PAIRS = (
+    ("lean", "paper"),
+    ("lean-full-base", "paper"),
+    ("lean-at-paper-tilt", "paper"),
+    ("lean-no-base", "paper-no-base"),
+)
 
 
 def write_tables(evaluation: Evaluation, folder: Path) -> tuple[Path, ...]:
@@ -72,9 +77,13 @@ def markdown(evaluation: Evaluation) -> str:
     """The tables to read: methods, ablations if there are any, comparisons, failures."""
     label, count = evaluation.data_set.label, len(evaluation.data_set.cases)
     found = {method.name: (method, one) for method, one in _summaries(evaluation)}
+    resolution = evaluation.methods[0].settings.resolution
+    reaches = {method.settings.base_reach for method in evaluation.methods if method.name in MAIN}
+    wide = "up to and including" if reaches == {"within"} else "below"
     lines = [
-        f"Data set: {label} ({count} models), {_VOXELS[evaluation.voxels]}. The paper's figures "
-        f"are of its own models, not of these: {SOURCE}.",
+        f"Data set: {label} ({count} models); {resolution}³ voxels, {_VOXELS[evaluation.voxels]}; "
+        f"B at distances {wide} ε. The paper's figures are of its own models, not of these: "
+        f"{SOURCE}.",
         "",
     ]
     lines += _table([found[name] for name in found if name in MAIN], label, "methods")

@@ -65,7 +65,7 @@ def test_at_the_papers_tilt_it_is_never_heavier(seed):
     assert ours.reachable_deg is None
 
 
-@pytest.mark.parametrize("name", ["lean", "lean-no-base", "lean-at-paper-tilt"])
+@pytest.mark.parametrize("name", ["lean", "lean-no-base", "lean-full-base", "lean-at-paper-tilt"])
 def test_few_voxels_are_fractional(name):
     for seed in SEEDS:
         body = body_of(random_voxels(seed), named(name, 5.0))
@@ -91,6 +91,9 @@ def test_a_base_is_not_built_where_nothing_needs_it():
     body = body_of(cube, named("lean"))
     assert (body.outside == body.solid).all()
     assert body.weight.sum() == 8**3 - 6**3
+    full = body_of(cube, named("lean-full-base"))
+    assert (full.outside & ~full.solid).sum() == 4 * 8  # a ring one voxel wide, in one layer
+    assert full.weight.sum() == body.weight.sum() + 4 * 8
 
 
 def test_adam_comes_close_to_the_plane():

@@ -128,6 +128,10 @@ def test_methods_by_name():
     assert len({json.dumps(m.described(), sort_keys=True) for m in methods(MAIN)}) == len(MAIN)
     ablations = methods((), ablations=True)
     assert len({json.dumps(m.described(), sort_keys=True) for m in ablations}) == len(ABLATIONS)
+    wide = methods(["paper", "paper-wide-base", "lean"], base_reach="within")
+    assert {method.settings.base_reach for method in wide} == {"within"}
+    narrow = methods(["paper", "paper-wide-base"])
+    assert [method.settings.base_reach for method in narrow] == ["below", "within"]
     assert "12.5° lean" in methods(["lean"], lean_deg=12.5)[0].title
     for options in ({"names": ["best"]}, {"names": []}, {"lean_deg": 90.0}):
         with pytest.raises(UsageError):
