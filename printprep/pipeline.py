@@ -13,10 +13,11 @@ from printprep.types import Advice, HollowResult, Lean
 
 if TYPE_CHECKING:
     import trimesh
+    from manifold3d import Manifold
 
     from printprep.density.program import BasePolicy
     from printprep.profiles import Profile
-    from printprep.types import Model, Solid
+    from printprep.types import Model, Solid, Supports
 
 Objective = Literal["lean", "paper"]
 
@@ -36,6 +37,7 @@ def hollow(
     lean: float | str | Lean | None = None,
     objective: Objective = "lean",
     base: BasePolicy = "auto",
+    self_support: bool = True,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the lean asked for.
@@ -52,6 +54,7 @@ def hollow(
         None takes the profile's.
     objective : "lean", the linear program, or "paper", DensiCrafter's objective solved as a plane.
     base : whether material may be added around the feet.
+    self_support : carry the cavities' ceilings from inside, where the process needs it (fdm).
 
     Raises
     ------
@@ -89,6 +92,11 @@ def hollow(
         )
     with clock.stage("cavity"):
         room = cavity_surface(solid.manifold, depths.field, settings.wall_mm)
+    supports = None
+    if self_support and settings.process == "fdm" and not room.is_empty():
+        with clock.stage("supports"):
+            room, supports = _supported(room, settings)
+        settings = _with_free_supports(settings, supports)
     with clock.stage("base"):
         program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
         choice = program.choose(base, asked)
@@ -130,6 +138,7 @@ def hollow(
         wall_min_mm=None if subject.wall is None else subject.wall.value_mm,
         findings=findings,
         advice=advice,
+        supports=supports,
         seconds=clock.seconds,
     )
 
@@ -176,6 +185,34 @@ def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
         replace(placed, vertices=vertices, placement=placement),
         replace(solid, manifold=manifold, placement=placement),
     )
+
+
+def _supported(room: Manifold, profile: Profile) -> tuple[Manifold, Supports]:
+    """The room with its ceilings carried, and by what."""
+    from printprep.cavity.vaults import vaulted
+    from printprep.types import Supports
+
+    vaults = vaulted(room, profile)
+    return vaults.cavity, Supports(
+        vaults.capitals,
+        vaults.columns,
+        vaults.added_mm3,
+        vaults.unsupported_mm2,
+        vaults.islands,
+    )
+
+
+def _with_free_supports(profile: Profile, supports: Supports) -> Profile:
+    """The profile without the key that keeps a slicer's supports out of cavities, once none goes.
+
+    The key costs the outside its supports where they would rest on the model.
+    """
+    if supports.unsupported_mm2 > 0 or supports.islands:
+        return profile
+    kept = dict(profile.slicer.object_settings)
+    kept.pop("support_material_buildplate_only", None)
+    slicer = profile.slicer.model_copy(update={"object_settings": kept})
+    return profile.model_copy(update={"slicer": slicer})
 
 
 def _check_resolution(resolution: int) -> None:

@@ -17,6 +17,7 @@ STAGES: Mapping[str, str] = MappingProxyType(
         "read": "Reading the model",
         "repair": "Making it a solid",
         "voxelize": "Measuring how deep the material is",
+        "supports": "Carrying the cavity's ceilings from inside",
         "base": "Choosing what it stands on",
         "solve": "Finding the lightest filling that stands",
         "cavity": "Cutting the cavity",

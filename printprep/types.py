@@ -273,6 +273,21 @@ class Simulation:
 
 
 @dataclass(frozen=True)
+class Supports:
+    """The vaults that carry a cavity's ceilings from inside, over all the room for cavities.
+
+    added_mm3 : what they take of the room; where ballast fills it too, nothing is counted twice.
+    unsupported_mm2, islands : what the slicer's acceptance rule still flags.
+    """
+
+    capitals: int
+    columns: int
+    added_mm3: float
+    unsupported_mm2: float
+    islands: int
+
+
+@dataclass(frozen=True)
 class Advice:
     """What would make a lean that is out of reach feasible.
 
@@ -302,6 +317,7 @@ class HollowResult:
     wall_min_mm: float | None
     findings: tuple[Finding, ...]
     advice: Advice | None = None
+    supports: Supports | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
 

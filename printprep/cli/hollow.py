@@ -82,6 +82,13 @@ Examples:
     is_flag=True,
     help="Slice the part with PrusaSlicer too, and measure the G-code, as `printprep verify` does.",
 )
+@click.option(
+    "--self-support/--no-self-support",
+    default=True,
+    show_default=True,
+    help="Carry the ceilings of cavities by vaults inside them, so that they print without "
+    "support (filament only).",
+)
 @output_form_options("none")
 def command(
     model: Path,

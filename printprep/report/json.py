@@ -104,6 +104,21 @@ def finding_json(finding: Finding) -> dict[str, Any]:
     }
 
 
+def _supports(result: HollowResult) -> dict[str, Any] | None:
+    """The vaults over all the room; what ballast swallows of them is in no sum twice."""
+    found = result.supports
+    if found is None:
+        return None
+    return {
+        "capitals": found.capitals,
+        "columns": found.columns,
+        "added_mm3": number(found.added_mm3),
+        "added_g": number(found.added_mm3 * result.profile.material.density_g_cm3 / 1000),
+        "unsupported_mm2": number(found.unsupported_mm2),
+        "islands": found.islands,
+    }
+
+
 def _advice(advice: Advice | None) -> dict[str, Any] | None:
     if advice is None:
         return None
@@ -138,6 +153,7 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "aim_deg": number(result.density.aim_deg),
         "reachable_deg": number(result.density.reachable_deg),
         "advice": _advice(result.advice),
+        "supports": _supports(result),
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

@@ -47,6 +47,8 @@ def show_result(
     if result.simulation is not None:
         facts.add_row("simulated", simulated(result.simulation))
     facts.add_row("cavities", _cavities(result.part.cavities))
+    if result.supports is not None:
+        facts.add_row("held inside by", _supports(result))
     facts.add_row("base", _base(result))
     proof = _proof(result)
     if proof is not None:
@@ -152,6 +154,17 @@ def show_findings(console: Console, findings: Sequence[Finding]) -> None:
         table.add_row(Text(item.severity, style=_STYLE[item.severity]), words)
     console.print()
     console.print(table)
+
+
+def _supports(result: HollowResult) -> str:
+    found = result.supports
+    if found is None or not found.capitals:
+        return "nothing: its ceilings print as they are"
+    grams = found.added_mm3 * result.profile.material.density_g_cm3 / 1000
+    words = f"vaults on {found.columns} columns, {_mass(grams)}"
+    if found.unsupported_mm2 or found.islands:
+        words += f"; {found.unsupported_mm2:.1f} mm² still unsupported"
+    return words
 
 
 def _facts_table() -> Table:
