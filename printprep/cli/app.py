@@ -17,6 +17,7 @@ _COMMANDS = {
     "check": "printprep.cli.check",
     "explore": "printprep.cli.explore",
     "verify": "printprep.cli.verify",
+    "hook": "printprep.cli.hook",
     "simulate": "printprep.cli.simulate",
     "evaluate": "printprep.cli.evaluate",
     "profiles": "printprep.cli.profiles",

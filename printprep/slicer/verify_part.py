@@ -30,7 +30,8 @@ class CarriedPart:
     mass_g, centre_mm, tilt_deg (None without contact; toward the lean's azimuth, if it has one),
     lean, contact_polygon_mm ((k, 2), empty without contact), contact_area_mm2, bodies, profile :
     as carried.
-    size_mm : (3,);  placement : (4, 4) model's file → bed;  cavities : sealed voids of the mesh.
+    size_mm, middle_mm : (3,) of the bounding box;  placement : (4, 4) model's file → bed;
+    cavities : sealed voids of the mesh.
     """
 
     file: Path
@@ -42,6 +43,7 @@ class CarriedPart:
     contact_area_mm2: float
     bodies: int
     size_mm: Float
+    middle_mm: Float
     placement: Float
     cavities: tuple[Manifold, ...]
     profile: Profile
@@ -79,6 +81,7 @@ def carried_part(path: str | Path) -> CarriedPart:
             contact_area_mm2=float(contact["area_mm2"]),
             bodies=int(said["bodies"]),
             size_mm=high - low,
+            middle_mm=(low + high) / 2 + shift,
             placement=moved @ np.array(said["placement"], dtype=float),
             cavities=shells(manifold)[1],
             profile=_profile(said),

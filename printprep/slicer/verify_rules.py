@@ -167,7 +167,7 @@ def _tilt(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
     asked = part.lean.angle_deg
     # Where the lean is out of reach, the part promises only the tilt it has
     promised = asked if part.tilt_deg is None else min(asked, part.tilt_deg)
-    if tilt < promised - LEAN_DEG or tilt < 0:
+    if tilt < promised - LEAN_DEG or tilt < 0 <= promised:
         falls = "falls by itself" if tilt < 0 else f"tips at {tilt:.1f}°"
         yield Finding(
             "printed-tilt",

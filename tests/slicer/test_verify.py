@@ -175,6 +175,12 @@ def test_a_lean_out_of_reach_or_toward_one_side(block: Path):
     low = replace(part, lean=Lean(30.0), tilt_deg=5.0)
     assert list(compare(low, as_printed(low, tilt_deg=4.1))) == []
     assert [item.rule for item in compare(low, as_printed(low, tilt_deg=3.9))] == ["printed-tilt"]
+    falling = replace(part, tilt_deg=-15.0)  # told when it was hollowed; no news of the print
+    assert list(compare(falling, as_printed(falling, tilt_deg=-15.2))) == []
+    barely = replace(part, lean=Lean(0.0), tilt_deg=0.5)
+    assert [item.rule for item in compare(barely, as_printed(barely, tilt_deg=-0.2))] == [
+        "printed-tilt"
+    ]
     # Toward a corner a cube stands to atan √2, however soon it tips over an edge
     diagonal = replace(part, lean=Lean(53.0, 45.0), tilt_deg=54.7)
     assert list(compare(diagonal, as_printed(diagonal))) == []
