@@ -39,6 +39,7 @@ COLUMNS = (
     ("tilt after °", "tilt_deg", "{:.1f}"),
     ("reachable °", "reachable_deg", "{:.1f}"),
     ("base", "base", "{}"),
+    ("vaults g", "vaults", "{}"),
     ("wall mm", "judged_wall_mm", "{:.3f}"),
     ("outside moved mm", "outside_moved_mm", "{:.5f}"),
     ("cavities", "cavities", "{}"),
@@ -57,11 +58,19 @@ def main() -> int:
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", help="file stems, all without")
     parser.add_argument("--no-slice", action="store_true")
+    parser.add_argument("--plain", action="store_true", help="without vaults in the cavities")
     parser.add_argument("--json", type=Path, help="the rows as JSON too")
     arguments = parser.parse_args()
     rows = []
     for model, up in catalogue(arguments.catalogue, arguments.only):
-        row = measure(model, up, arguments.size, arguments.profile, not arguments.no_slice)
+        row = measure(
+            model,
+            up,
+            arguments.size,
+            arguments.profile,
+            slice_it=not arguments.no_slice,
+            plain=arguments.plain,
+        )
         rows.append(row)
         sys.stderr.write(json.dumps(row) + "\n")
     arguments.output.write_text(markdown(rows), encoding="utf-8")
@@ -78,12 +87,15 @@ def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
     return [pair for pair in models if not only or pair[0].stem in only]
 
 
-def measure(model: Path, up: str, size_mm: float, profile: str, slice_it: bool) -> dict[str, Any]:
+def measure(
+    model: Path, up: str, size_mm: float, profile: str, *, slice_it: bool, plain: bool = False
+) -> dict[str, Any]:
     """One row of the table."""
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
         command = [sys.executable, "-m", "printprep", "hollow", str(model), "-o", str(part)]
         command += ["--up", up, "--size", str(size_mm), "--profile", profile, "--json"]
+        command += ["--no-self-support"] if plain else []
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
         row: dict[str, Any] = {"model": model.stem, "exit": ran.returncode, "stderr": ran.stderr}
         if ran.returncode != 0:
@@ -93,6 +105,10 @@ def measure(model: Path, up: str, size_mm: float, profile: str, slice_it: bool) 
         row |= {key: said[key] for key in ("tilt_solid_deg", "reachable_deg", "wall_min_mm")}
         row["repair"] = said["repair"]["rung"]
         row["cavities"] = said["cavities"]["count"]
+        held = said["supports"]
+        row["unsupported_mm2"] = 0 if held is None else held["unsupported_mm2"]
+        row["islands"] = 0 if held is None else held["islands"]
+        row["vaults"] = None if held is None else f"{held['added_g']:.2f}"
         row["base"] = base_text(said["base"])
         row["seconds"] = sum(said["seconds"].values())
         row["stages"] = said["seconds"]

@@ -53,3 +53,4 @@ def test_a_real_model_is_hollowed_and_prints(
         assert row["reachable_deg"] < LEAN_DEG
         assert "lean-out-of-reach" in row["errors"]
     assert row["mass_g"] <= row["solid_mass_g"] * 1.02
+    assert row["unsupported_mm2"] == 0 and row["islands"] == 0

@@ -20,7 +20,8 @@ GRAMS = 1.24 / 1000
 
 def hollowed(manifold: Manifold, **options: object) -> HollowResult:
     mesh = trimesh.Trimesh(*arrays(manifold), process=False)
-    return hollow(mesh, **{"resolution": 48, **options})  # type: ignore[arg-type]
+    plain = {"resolution": 48, "self_support": False}
+    return hollow(mesh, **{**plain, **options})  # type: ignore[arg-type]
 
 
 def test_a_cube_becomes_a_box_with_even_walls() -> None:
@@ -202,3 +203,21 @@ def test_a_pose_lays_the_model_down() -> None:
     assert np.abs(corner[:2]).min() == pytest.approx(5.0)
     with pytest.raises(UsageError, match="pose 99"):
         hollowed(solids.box(10, 10, 120), pose=99)
+
+
+def test_vaults_are_weighed_in_the_program() -> None:
+    # A tall box leaning a little: its flat ceiling is carried, and that mass is high up.
+    prism = solids.leaning_prism(24, 50, 14)
+    options = {"base": "never", "lean": 6.0}
+    plain = hollowed(prism, **options)
+    held = hollowed(prism, self_support=True, **options)
+    assert held.supports is not None and held.supports.columns > 0
+    assert held.supports.unsupported_mm2 == 0 and held.supports.islands == 0
+    assert held.mass_g > plain.mass_g
+    assert held.stability.tilt_deg >= 6.0  # type: ignore[operator]
+    certificate = held.density.certificate
+    assert certificate is not None and certificate.gap <= 1e-6
+    assert certificate.voxel_mass_g == pytest.approx(held.mass_g, rel=0.01)
+    assert "support_material_buildplate_only" not in held.profile.slicer.object_settings
+    assert "support_material_buildplate_only" in plain.profile.slicer.object_settings
+    assert plain.supports is None
