@@ -81,17 +81,28 @@ class Unsupported:
         return max(self.patches, key=lambda patch: (patch.island, patch.area_mm2), default=None)
 
 
-def unsupported_ceilings(cavity: Manifold, rule: Acceptance, phase: float = 0.0) -> Unsupported:
+def unsupported_ceilings(
+    cavity: Manifold,
+    rule: Acceptance,
+    phase: float = 0.0,
+    between_mm: tuple[float, float] = (-np.inf, np.inf),
+) -> Unsupported:
     """What the ceilings of a cavity, and pieces that begin inside it, would need as support.
 
     Parameters
     ----------
     cavity : the void, in printing position; material all around it thicker than ``rule.off_mm``.
     phase : layers are cut this share of a layer higher: another first layer, a raft.
+    between_mm : only layers whose undersides lie between these heights are judged.
     """
     patches: list[Flagged] = []
     below: CrossSection | None = None
+    low, high = between_mm
     for middle, bottom in _layers(cavity, rule, phase):
+        if bottom > high:
+            break
+        if middle + rule.layer_mm < low:
+            continue
         here = cavity.slice(middle).simplify(SIMPLIFY_MM)
         if below is not None and not below.is_empty():
             patches.extend(_ceilings(here, below, bottom, rule))

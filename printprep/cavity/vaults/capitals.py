@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 OVERLAP_MM = 0.12
 # What a column is taken to cost before it is known; the result is flat in it.
-COLUMN_MM3 = 4.0
+COLUMN_MM3 = 8.0
 CANDIDATE_STEP_MM = 0.7
 # Nodes lie so far under a sample.
-LOWERED_MM = (0.0, 0.4, 0.9, 1.4, 2.0, 2.8)
+LOWERED_MM = (0.0, 0.4, 0.9, 1.4, 2.0, 2.8, 3.6)
 # A funnel carries nothing farther from its axis, nor higher above its node.
-REACH_MM = 2.8
-RISE_MM = 4.0
+REACH_MM = 3.6
+RISE_MM = 5.0
 TIGHTENINGS = 3
 
 
@@ -91,7 +91,9 @@ def _pairs(nodes: Float, samples: Float, members: Members) -> _Pairs:
     kept = []
     for depth, lowered in enumerate(LOWERED_MM):
         up = rise + lowered
-        carried = (up >= 0) & (up <= RISE_MM) & (d <= members.radius_mm + up * members.tan - OVERLAP_MM)
+        carried = (
+            (up >= 0) & (up <= RISE_MM) & (d <= members.radius_mm + up * members.tan - OVERLAP_MM)
+        )
         at = np.flatnonzero(carried)
         thick = up[at] - np.maximum(0.0, d[at] - members.radius_mm) / members.tan
         kept.append((i[at] * depths + depth, j[at], thick))
@@ -147,7 +149,11 @@ def _tightened(nodes: Float, samples: Float, members: Members) -> Capitals:
     for _ in range(TIGHTENINGS):
         node, sample, d = _near(nodes, samples)
         rise = samples[sample, 2] - nodes[node, 2]
-        inside = (rise >= 0) & (rise <= RISE_MM) & (d <= members.radius_mm + rise * members.tan - OVERLAP_MM + 1e-9)
+        inside = (
+            (rise >= 0)
+            & (rise <= RISE_MM)
+            & (d <= members.radius_mm + rise * members.tan - OVERLAP_MM + 1e-9)
+        )
         inside &= alive[node]
         node, sample = node[inside], sample[inside]
         start = np.searchsorted(node, np.arange(len(nodes) + 1))

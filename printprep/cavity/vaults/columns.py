@@ -52,7 +52,9 @@ def raise_columns(
         if np.isfinite(near_mm):
             length = near_mm
         cost = float(members.volume_mm3(above, length))
-        meeting = _best_partner(tip, np.fromiter(waiting, np.int64), cost, landings, members, forest)
+        meeting = _best_partner(
+            tip, np.fromiter(waiting, np.int64), cost, landings, members, forest
+        )
         if meeting is not None:
             cost = meeting[0]
         joint = _best_axis(tip, cost, members, forest)

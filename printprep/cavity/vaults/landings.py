@@ -43,7 +43,9 @@ class Landings:
         cell = np.array([CELL_MM, CELL_MM, CELL_MM / members.tan])
         low = np.append(dexels.low_mm, dexels.floor_mm) - cell
         x, y = (
-            np.arange(low[k], dexels.low_mm[k] + dexels.shape[k] * dexels.step_mm + cell[k], cell[k])
+            np.arange(
+                low[k], dexels.low_mm[k] + dexels.shape[k] * dexels.step_mm + cell[k], cell[k]
+            )
             for k in range(2)
         )
         z = np.arange(low[2], top_mm + cell[2], cell[2])
@@ -78,7 +80,9 @@ def _step_down(length: Float, target: Float, k: int, held: Float, cell: Float) -
         reach = layers
         for i in range(-reach, reach + 1):
             for j in range(-reach, reach + 1):
-                if i * i + j * j > reach * reach or (layers > 1 and max(abs(i), abs(j)) < layers - 1):
+                if i * i + j * j > reach * reach or (
+                    layers > 1 and max(abs(i), abs(j)) < layers - 1
+                ):
                     continue
                 fall = layers * float(cell[2])
                 step = fall + (i * i + j * j) * float(cell[0]) ** 2 / fall

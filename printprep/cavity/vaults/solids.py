@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.cavity.vaults.members import Members
     from printprep.types import Float
 
-SIDES = 16
+SIDES = 12
 # Solids that only touch would leave coincident faces: each goes on so far into the next.
 INTO_MM = 0.03
 # A funnel ends so far above the ceiling it carries.
@@ -33,7 +33,9 @@ def capital_solids(capitals: Capitals, members: Members) -> list[Manifold]:
     for node, top in zip(capitals.node_mm, capitals.top_mm, strict=True):
         rise = max(float(top - node[2]), 0.0) + BEYOND_MM
         upper = node + [0.0, 0.0, rise]
-        solids.append(frustum(node, members.radius_mm, upper, members.radius_mm + rise * members.tan))
+        solids.append(
+            frustum(node, members.radius_mm, upper, members.radius_mm + rise * members.tan)
+        )
     return solids
 
 

@@ -1,0 +1,128 @@
+"""The parts of vaults: samples, capitals, columns, feet, solids, each by what it must hold."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold, OpType
+from solids import box
+
+from printprep.cavity.vaults.capitals import OVERLAP_MM, cover
+from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
+from printprep.cavity.vaults.columns import raise_columns
+from printprep.cavity.vaults.dexels import Dexels
+from printprep.cavity.vaults.feet import set_feet
+from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.landings import Landings
+from printprep.cavity.vaults.members import Members
+from printprep.cavity.vaults.solids import INTO_MM, column_solids, frustum
+
+MEMBERS = Members(theta_deg=35.5, thickness_mm=1.2)
+
+
+def room() -> Manifold:
+    """A box of air, 20 mm wide and 15 mm high, its floor at 2 mm."""
+    return box(20, 20, 15).translate((0, 0, 2))
+
+
+def built(void: Manifold) -> tuple[np.ndarray, Forest]:
+    samples = ceiling_samples(void, 40.0)
+    nodes = cover(samples, MEMBERS, SPACING_MM**2).node_mm
+    dexels = Dexels.of(void, 0.35)
+    forest = Forest()
+    landings = Landings.of(dexels, MEMBERS, float(nodes[:, 2].max()))
+    raise_columns(nodes, dexels, landings, MEMBERS, forest)
+    set_feet(forest, dexels, MEMBERS)
+    return nodes, forest
+
+
+def test_a_flat_ceiling_is_sampled_everywhere():
+    samples = ceiling_samples(room(), 40.0)
+    assert len(samples) * SPACING_MM**2 == pytest.approx(400, rel=0.03)
+    assert np.ptp(samples[:, 2]) < 1e-9
+    assert samples[0, 2] == pytest.approx(17.0)
+
+
+@pytest.mark.parametrize(("deg", "sampled"), [(39, False), (41, True)])
+def test_a_slope_is_sampled_on_one_side_of_the_angle(deg, sampled):
+    cone = Manifold.cylinder(8 / math.tan(math.radians(deg)), 8, 0, 128)
+    assert (len(ceiling_samples(cone, 40.0)) > 0) is sampled
+
+
+def test_of_a_ball_the_cap_is_sampled():
+    """n_z > sin θ on a sphere is a cap of radius R cos θ, seen from above."""
+    samples = ceiling_samples(Manifold.sphere(10, 256), 40.0)
+    area = math.pi * (10 * math.cos(math.radians(40))) ** 2
+    assert len(samples) * SPACING_MM**2 == pytest.approx(area, rel=0.03)
+
+
+def test_capitals_carry_every_sample():
+    samples = ceiling_samples(Manifold.sphere(10, 128), 40.0)
+    nodes = cover(samples, MEMBERS, SPACING_MM**2).node_mm
+    d = np.hypot(*(samples[:, None, :2] - nodes[None, :, :2]).transpose(2, 0, 1))
+    rise = samples[:, None, 2] - nodes[None, :, 2]
+    reach = MEMBERS.radius_mm + rise * MEMBERS.tan - OVERLAP_MM
+    assert ((rise >= -1e-9) & (d <= reach + 1e-6)).any(axis=1).all()
+
+
+@given(st.floats(0, 60), st.floats(0, 60))
+def test_a_column_s_volume_is_that_of_its_frustums(above, length):
+    share = np.linspace(0, 1, 4001)
+    half = MEMBERS.across_mm(above + share * length)
+    expected = np.trapezoid(math.pi * half**2, share * length)
+    assert MEMBERS.volume_mm3(above, length) == pytest.approx(expected, rel=1e-4, abs=1e-9)
+
+
+def test_a_frustum_holds_its_discs():
+    solid = frustum(np.array([0, 0, 0.0]), 2.0, np.array([1, 0, 3.0]), 1.0)
+    lower, upper = solid.slice(1e-6).area(), solid.slice(3 - 1e-6).area()
+    assert math.pi * 4 < lower < 1.03 * math.pi * 4
+    assert math.pi < upper < 1.03 * math.pi
+
+
+def test_columns_lean_within_the_limit_thicken_downward_and_stand():
+    void = room()
+    nodes, forest = built(void)
+    assert forest.columns >= len(nodes)
+    for index in range(len(forest)):
+        lower = forest.down[index]
+        if lower < 0:
+            assert index in forest.stands
+            continue
+        way = forest.place(lower) - forest.place(index)
+        assert np.hypot(way[0], way[1]) <= -way[2] * MEMBERS.tan * (1 + 1e-9) + 1e-9
+        length = float(np.linalg.norm(way))
+        if lower not in forest.stands:
+            assert forest.above_mm[lower] >= forest.above_mm[index] + length - 1e-6
+    floor_or_wall = np.array([forest.place(index) for index in forest.stands])
+    outside = (np.abs(floor_or_wall[:, :2]).max(axis=1) > 10) | (floor_or_wall[:, 2] < 2)
+    assert outside.all()
+
+
+def test_columns_are_thick_across_their_axis_and_slender_within_bounds():
+    _, forest = built(room())
+    uppers = [index for index in range(len(forest)) if forest.down[index] >= 0]
+    places = np.array([forest.place(index) for index in range(len(forest))])
+    solids = column_solids(forest, MEMBERS)
+    order = [i for i in np.argsort(-places[:, 2], kind="stable").tolist() if i in set(uppers)]
+    for index, solid in zip(order, solids, strict=True):
+        way = places[forest.down[index]] - places[index]
+        fall, length = -way[2], np.linalg.norm(way)
+        for share in (0.1, 0.9):
+            height = float(places[index][2] - share * fall)
+            across = 2 * math.sqrt(solid.slice(height).area() / math.pi) * fall / length
+            above = forest.above_mm[index] + share * length
+            assert across >= max(1.2, above / MEMBERS.slenderness) - 1e-6
+
+
+def test_columns_hang_together_and_reach_their_shell():
+    void = room()
+    _, forest = built(void)
+    solids = Manifold.batch_boolean(column_solids(forest, MEMBERS), OpType.Add)
+    shell = box(30, 30, 30).translate((0, 0, -5)) - void
+    assert len((solids + shell).decompose()) == 2  # the outside, and the void around the columns
+    assert INTO_MM < 0.05
