@@ -10,6 +10,7 @@ import hashlib
 import json
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -148,8 +149,9 @@ def _rounded(value: float) -> float:
 
 
 def _settings(case: Case, method: Method, voxels: Voxels) -> dict[str, Any]:
-    # A file that cannot be read is reported where it is read as a mesh.
-    data = case.path.read_bytes() if case.path.is_file() else b""
+    data = b""
+    with suppress(OSError):  # what cannot be read is reported where it is read as a mesh
+        data = case.path.read_bytes()
     settings = {
         "format": FORMAT,
         "printprep": __version__,

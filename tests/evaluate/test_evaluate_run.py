@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from shutil import copytree
 
 import pytest
 from evaluate_models import write_boxes
@@ -27,6 +28,23 @@ def models(tmp_path):
     return folder
 
 
+@pytest.fixture(scope="module")
+def evaluated(tmp_path_factory):
+    """Where the two models have been evaluated once, and what came out."""
+    folder = tmp_path_factory.mktemp("evaluated")
+    write_boxes(folder / "cube.obj", CUBE)
+    write_boxes(folder / "gallows.obj", *GALLOWS)
+    return folder, evaluate(data_set(folder), QUICK, folder)
+
+
+@pytest.fixture
+def before(evaluated, tmp_path):
+    """The same, with the results in ``tmp_path`` for a test to meddle with."""
+    folder, found = evaluated
+    copytree(folder / "results", tmp_path / "results")
+    return found
+
+
 def timeless(found):
     return [replace(row, seconds=0.0) for row in found.results]
 
@@ -48,8 +66,7 @@ def test_closed_forms_come_out(models, tmp_path):
     assert rows["gallows", "solid"].tilt_deg < 0
 
 
-def test_what_is_kept_is_not_computed_again(models, tmp_path):
-    first = evaluate(data_set(models), QUICK, tmp_path)
+def test_what_is_kept_is_not_computed_again(models, tmp_path, before):
     file = tmp_path / "results" / "cube" / "paper.json"
     stored = json.loads(file.read_text())
     stored["result"]["tilt_deg"] = 12.5
@@ -57,12 +74,11 @@ def test_what_is_kept_is_not_computed_again(models, tmp_path):
     again = evaluate(data_set(models), QUICK, tmp_path)
     marked = {(row.model, row.method): row.tilt_deg for row in again.results}
     assert marked["cube", "paper"] == 12.5
-    assert again.results[0] == first.results[0]  # to the seconds
+    assert again.results[0] == before.results[0]  # to the seconds
 
 
 @pytest.mark.parametrize("what", ["settings", "voxels", "model", "half a file", "missing"])
-def test_what_does_not_fit_is_computed_again(models, tmp_path, what):
-    before = evaluate(data_set(models), QUICK, tmp_path)
+def test_what_does_not_fit_is_computed_again(models, tmp_path, before, what):
     file = tmp_path / "results" / "cube" / "paper.json"
     stored = json.loads(file.read_text())
     stored["result"]["tilt_deg"] = 12.5
@@ -84,19 +100,19 @@ def test_what_does_not_fit_is_computed_again(models, tmp_path, what):
         assert timeless(after) == timeless(before)
 
 
+@pytest.mark.usefixtures("before")
 def test_a_lean_of_no_concern_to_a_method_keeps_its_result(models, tmp_path):
-    evaluate(data_set(models), QUICK, tmp_path)
     file = tmp_path / "results" / "cube" / "paper.json"
-    before = file.read_bytes()
+    stored = file.read_bytes()
     steeper = methods(["paper", "lean"], resolution=10, lean_deg=12.0)
     found = evaluate(data_set(models), steeper, tmp_path)
-    assert file.read_bytes() == before
+    assert file.read_bytes() == stored
     assert {row.lean_deg for row in found.results if row.method == "lean"} == {12.0}
 
 
-def test_workers_change_nothing(models, tmp_path):
+def test_workers_change_nothing(models, tmp_path, evaluated):
     told: list[tuple[str, int, int]] = []
-    alone = evaluate(data_set(models), QUICK, tmp_path / "one")
+    _, alone = evaluated
     together = evaluate(
         data_set(models), QUICK, tmp_path / "two", workers=2, told=lambda *a: told.append(a)
     )
@@ -107,10 +123,12 @@ def test_workers_change_nothing(models, tmp_path):
 
 def test_a_bad_model_does_not_stop_the_others(models, tmp_path):
     (models / "bad.stl").write_text("solid nothing")
+    (models / "folder.ply").mkdir()
     found = evaluate(data_set(models), QUICK[:1], tmp_path)
     assert [row.model for row in found.results] == ["cube", "gallows"]
-    [(name, error)] = found.failures
-    assert name == "bad" and isinstance(error, InputError) and "bad.stl" in error.message
+    assert [name for name, _ in found.failures] == ["bad", "folder"]
+    for name, error in found.failures:
+        assert isinstance(error, InputError) and f"{name}." in error.message
 
 
 def test_a_folder_that_cannot_be_is_an_output_error(models, tmp_path):
