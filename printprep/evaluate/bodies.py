@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.density.paper_domain import PaperDomain, build_domain
-from printprep.evaluate.balance import tilt_deg
-from printprep.evaluate.leanest import Leanest, footprints, leanest
+from printprep.density.voxel_balance import tilt_deg
+from printprep.density.voxel_lean import Leanest, footprints, leanest
 from printprep.evaluate.methods import Method
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.evaluate.balance import inertia, moments, support_polygon
+from printprep.density.voxel_balance import inertia, moments, support_polygon
 from printprep.stand.motion import STEP_S, Motion
 from printprep.stand.scene import Scene
 from printprep.stand.simulate import SECONDS

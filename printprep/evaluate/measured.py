@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep import __version__
+from printprep.density.voxel_balance import tilt_deg
 from printprep.errors import OutputError
-from printprep.evaluate.balance import tilt_deg
 from printprep.evaluate.bodies import body_of
 from printprep.evaluate.cases import Case
 from printprep.evaluate.fidelity import Fidelity, fidelity

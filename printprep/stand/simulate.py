@@ -13,7 +13,7 @@ from printprep.types import Settled
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-# The judgement of Cao et al., "DensiCrafter", 2025: turned by less than this after ten seconds.
+# The judgement of Dang et al., "DensiCrafter", 2025: turned by less than this after ten seconds.
 STANDS_BELOW_DEG = 20.0
 SECONDS = 10.0
 

@@ -53,7 +53,8 @@ class VoxelHollow:
 def hollow(
     voxels: Any,
     *,
-    objective: Literal["paper"] = "paper",
+    objective: Literal["lean", "paper"] = "paper",
+    lean_deg: float = 10.0,
     solver: Solver = "plane",
     settings: PaperSettings | None = None,
     solve: Solve | None = None,
@@ -67,7 +68,9 @@ def hollow(
     Parameters
     ----------
     voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see `form.occupancy`.
-    objective, solver : the paper's terms, solved as a plane or by Adam (on ``device``).
+    objective : "paper", the paper's terms, or "lean", the least material that stands at
+        ``lean_deg`` (see :mod:`printprep.density.voxel_lean`).
+    solver : of the paper's terms: as a plane, or by Adam (on ``device``).
     settings : the paper's parameters; None for its values.
     solve : another program in place of the paper's: a function from the domain to a density.
     batch : which sample of a batched tensor; its number is kept in the result's batch column.
@@ -81,7 +84,11 @@ def hollow(
     occupied, form = occupancy(voxels, batch=batch)
     chosen = settings or PaperSettings()
     if solve is None:
-        solve = _paper(objective, solver, chosen, device)
+        solve = (
+            _lean(lean_deg, solver, device)
+            if objective == "lean"
+            else _paper(objective, solver, chosen, device)
+        )
     elif (solver, device) != ("plane", "cpu"):
         raise UsageError("solver and device belong to the paper's objective, not to solve")
     domain = build_domain(occupied, chosen, shell=shell, filling=filling)
@@ -101,9 +108,21 @@ def hollow(
     )
 
 
+def _lean(lean_deg: float, solver: str, device: str) -> Solve:
+    if (solver, device) != ("plane", "cpu"):
+        raise UsageError("solver and device belong to the paper's objective, not to lean")
+    if not 0 <= lean_deg <= 60:
+        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
+    from printprep.density.voxel_lean import footprints, leanest
+
+    return lambda domain: leanest(domain, lean_deg, footprints(domain)).weight
+
+
 def _paper(objective: str, solver: str, settings: PaperSettings, device: str) -> Solve:
     if objective != "paper":
-        raise UsageError(f"objective {objective!r} is not paper", "pass another program as solve")
+        raise UsageError(
+            f"objective {objective!r} is neither lean nor paper", "pass another as solve"
+        )
     if solver == "plane":
         if device != "cpu":
             raise UsageError("the plane is solved on the cpu", "use solver adam with a device")

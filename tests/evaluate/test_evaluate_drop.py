@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from evaluate_models import voxel_box
 
-from printprep.evaluate.balance import tilt_deg
+from printprep.density.voxel_balance import tilt_deg
 from printprep.evaluate.drop import final_rotation_deg, scene_of_voxels
 
 SHAPE = (16, 16, 16)

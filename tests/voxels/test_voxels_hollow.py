@@ -144,7 +144,7 @@ def test_nothing_to_hollow_is_not_an_error():
 def test_refusals():
     _, surface = _surface()
     with pytest.raises(UsageError, match="objective"):
-        hollow(surface, objective="lean")
+        hollow(surface, objective="lightest")
     with pytest.raises(UsageError, match="solver"):
         hollow(surface, solver="guess")
     with pytest.raises(UsageError, match="cpu"):

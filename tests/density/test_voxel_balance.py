@@ -8,7 +8,7 @@ from evaluate_models import voxel_box
 from hypothesis import given
 from hypothesis import strategies as st
 
-from printprep.evaluate.balance import footing, inertia, moments, support_polygon, tilt_deg
+from printprep.density.voxel_balance import footing, inertia, moments, support_polygon, tilt_deg
 
 SIDES = st.tuples(*[st.integers(1, 9)] * 3)
 CORNER = st.tuples(*[st.integers(0, 5)] * 3)

@@ -9,9 +9,9 @@ from scipy.optimize import linprog
 
 from printprep.density.paper_domain import build_domain
 from printprep.density.paper_settings import PaperSettings
-from printprep.evaluate.balance import footing, moment_columns, tilt_deg
+from printprep.density.voxel_balance import footing, moment_columns, tilt_deg
+from printprep.density.voxel_lean import footprints, leanest
 from printprep.evaluate.bodies import body_of
-from printprep.evaluate.leanest import footprints, leanest
 from printprep.evaluate.methods import methods
 
 SEEDS = range(12)

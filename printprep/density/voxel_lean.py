@@ -18,7 +18,7 @@ import numpy as np
 from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
 from printprep.density.paper_domain import PaperDomain
-from printprep.evaluate.balance import footing, moment_columns
+from printprep.density.voxel_balance import footing, moment_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
