@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.capitals import cover
+from printprep.cavity.vaults.capitals import Capitals, cover
 from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
 from printprep.cavity.vaults.dexels import Dexels

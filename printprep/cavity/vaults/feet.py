@@ -55,7 +55,7 @@ def nearest_feet(
     open_ = np.arange(len(places))
     start = 0.0
     while len(open_) and start <= deepest_mm:
-        falls = start + STEP_MM * np.arange(_CHUNK)
+        falls: Float = start + STEP_MM * np.arange(_CHUNK, dtype=np.float64)
         middle = places[open_, None, None] + falls[None, None, :, None] * ways[None, :, None]
         above = np.broadcast_to(above_mm[open_, None, None], middle.shape[:3])
         held = _held(middle, above, falls[None, None, :], lean[None, :, None], dexels, members)
@@ -100,5 +100,4 @@ def _held(
     """Whether some of a column's section still lies in the room; arrays of one leading shape."""
     radius = members.across_mm(above_mm + fall_mm * lean) * lean + dexels.step_mm / 2
     points = middle[..., None, :] + radius[..., None, None] * disc()
-    result: Bool = dexels.contains(points).any(axis=-1)
-    return result
+    return np.asarray(dexels.contains(points).any(axis=-1))

@@ -66,7 +66,7 @@ class Forest:
         return len(self._place) - 1
 
     def stand(self, index: int, foot: Float) -> None:
-        """A column from a place to the shell at ``foot``; upright where that is the place itself."""
+        """A column from a place to the shell at ``foot``; upright where both are one."""
         start = self._place[index]
         end = self.plant(foot if foot[2] < start[2] else start - [0.0, 0.0, LEAST_FALL_MM])
         self.stands.append(end)

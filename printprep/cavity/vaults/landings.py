@@ -19,9 +19,13 @@ import numpy as np
 from printprep.cavity.vaults.feet import disc
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from printprep.cavity.vaults.dexels import Dexels
     from printprep.cavity.vaults.members import Members
     from printprep.types import Float
+
+    Float32 = NDArray[np.float32]
 
 CELL_MM = 1.0
 _LAYERS = 3
@@ -35,7 +39,7 @@ class Landings:
     low_mm: Float
     cell_mm: Float
     length_mm: Float
-    target_mm: Float
+    target_mm: Float32
 
     @staticmethod
     def of(dexels: Dexels, members: Members, top_mm: float) -> Landings:
@@ -71,7 +75,7 @@ class Landings:
         return self.length_mm[at], self.target_mm[at].astype(np.float64)
 
 
-def _step_down(length: Float, target: Float, k: int, held: Float, cell: Float) -> None:
+def _step_down(length: Float, target: Float32, k: int, held: Float, cell: Float) -> None:
     """Fill layer k where columns are ``held`` up, from the layers below; in place."""
     nx, ny = held.shape
     best = np.full(held.shape, np.inf)

@@ -58,9 +58,9 @@ class Members:
         half: Float = np.maximum(self.radius_mm, np.asarray(length_mm) / (2 * self.slenderness))
         return half
 
-    def volume_mm3(self, above_mm: Float, length_mm: Float) -> Float:
+    def volume_mm3(self, above_mm: Float | float, length_mm: Float | float) -> Float:
         """Of columns ``length_mm`` long that carry a tree of ``above_mm``."""
-        above = np.asarray(above_mm)
+        above: Float = np.asarray(above_mm, dtype=np.float64)
         result: Float = self._from_tip(above + length_mm) - self._from_tip(above)
         return result
 

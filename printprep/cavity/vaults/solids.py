@@ -1,7 +1,7 @@
 """Capitals and columns as convex solids of the boolean kernel.
 
-Every section is a regular polygon around the disc it stands for, all turned alike, so that a frustum
-between two of them has flat sides.
+Every section is a regular polygon around the disc it stands for, all turned alike, so that a
+frustum between two of them has flat sides.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def capital_solids(capitals: Capitals, members: Members) -> list[Manifold]:
     solids = []
     for node, top in zip(capitals.node_mm, capitals.top_mm, strict=True):
         rise = max(float(top - node[2]), 0.0) + BEYOND_MM
-        upper = node + [0.0, 0.0, rise]
+        upper = node + np.array([0.0, 0.0, rise])
         solids.append(
             frustum(node, members.radius_mm, upper, members.radius_mm + rise * members.tan)
         )
@@ -63,7 +63,7 @@ def column_solids(forest: Forest, members: Members) -> list[Manifold]:
 
 
 def frustum(low: Float, low_radius: float, high: Float, high_radius: float) -> Manifold:
-    """The solid between two horizontal regular polygons around discs (x, y, z), possibly sheared."""
+    """The solid between regular polygons around two horizontal discs, middles (x, y, z)."""
     turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
     ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(SIDES)], axis=1) / np.cos(np.pi / SIDES)
     vertices = np.concatenate([low + low_radius * ring, high + high_radius * ring])

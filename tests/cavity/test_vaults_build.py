@@ -1,0 +1,111 @@
+"""Whole rooms vaulted: closed forms, properties, and spot judged by the real slicer."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from dev_rooms import room_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from manifold3d import Manifold
+from solids import box
+from support_inside import support_inside_g
+
+from printprep.cavity.vaults import Vaults, vaulted
+from printprep.errors import UsageError
+from printprep.mesh.measure import shells
+from printprep.mesh.written import as_written
+from printprep.overhang.limits import acceptance
+from printprep.overhang.rule import unsupported_ceilings
+from printprep.profiles import load_profile
+
+PROFILE = load_profile("fdm-pla-0.4")
+
+
+def holds(room: Manifold, vaults: Vaults) -> None:
+    """What must be true of any vaulted room."""
+    assert vaults.unsupported_mm2 == 0 and vaults.islands == 0
+    assert (vaults.cavity - room).volume() == pytest.approx(0, abs=0.01 * room.surface_area() / 100)
+    assert vaults.added_mm3 == pytest.approx(room.volume() - vaults.cavity.volume(), abs=1e-6)
+    if vaults.cavity.is_empty():
+        return
+    low, high = np.reshape(room.bounding_box(), (2, 3))
+    shell = Manifold.cube((high - low + 4).tolist()).translate((low - 2).tolist())
+    part = as_written(shell - vaults.cavity)
+    solids, voids = shells(part)
+    assert len(solids) == 1
+    assert sum(v.volume() for v in voids) == pytest.approx(vaults.cavity.volume(), rel=1e-5)
+    for phase in (0.0, 0.25, 0.8):
+        written = [unsupported_ceilings(void, acceptance(PROFILE), phase) for void in voids]
+        assert sum(found.area_mm2 for found in written) < 0.05
+        assert sum(found.islands for found in written) == 0
+
+
+def test_a_roof_within_the_limit_needs_nothing():
+    room = Manifold.cylinder(10 / math.tan(math.radians(35)), 10, 0, 128).translate((0, 0, 2))
+    vaults = vaulted(room, PROFILE)
+    assert (vaults.samples, vaults.capitals, vaults.columns, vaults.added_mm3) == (0, 0, 0, 0)
+    assert vaults.cavity.volume() == room.volume()
+
+
+def test_a_ball_gets_a_vault_under_its_cap():
+    room = Manifold.sphere(12, 128).translate((0, 0, 14))
+    vaults = vaulted(room, PROFILE)
+    holds(room, vaults)
+    assert 0.01 < vaults.added_mm3 / room.volume() < 0.2
+
+
+def test_a_box_with_a_flat_ceiling():
+    room = box(16, 12, 12).translate((0, 0, 2))
+    vaults = vaulted(room, PROFILE)
+    holds(room, vaults)
+    section = vaults.cavity.slice(14 - 1e-3)
+    assert section.area() < 0.5  # the ceiling has all but gone
+
+
+def test_no_room_no_vaults():
+    vaults = vaulted(Manifold(), PROFILE)
+    assert vaults.cavity.is_empty() and vaults.added_mm3 == 0
+
+
+def test_it_comes_out_the_same_twice():
+    room = Manifold.sphere(9, 64).translate((0, 0, 12))
+    first, second = vaulted(room, PROFILE), vaulted(room, PROFILE)
+    assert np.array_equal(
+        first.cavity.to_mesh64().vert_properties, second.cavity.to_mesh64().vert_properties
+    )
+
+
+def test_resin_has_no_vaults():
+    with pytest.raises(UsageError, match="resin"):
+        vaulted(box(9, 9, 9), load_profile("resin-standard"))
+
+
+@settings(max_examples=8)
+@given(
+    st.floats(3, 9),
+    st.floats(3, 9),
+    st.floats(3, 9),
+    st.floats(0, 90),
+    st.floats(0, 90),
+)
+def test_any_ellipsoid_is_carried(a, b, c, tilt, turn):
+    room = Manifold.sphere(1, 48).scale((a, b, c)).rotate((tilt, 0, turn)).translate((0, 0, 14))
+    holds(room, vaulted(room, PROFILE))
+
+
+@pytest.mark.corpus
+@pytest.mark.slicer
+@pytest.mark.usefixtures("prusa_slicer")
+def test_spot_prints_without_support_inside(dev_models):
+    spot = dev_models["spot_low_resolution"]
+    solid, room = room_of(spot.path, spot.up, 50.0, PROFILE)
+    vaults = vaulted(room, PROFILE)
+    holds(room, vaults)
+    assert vaults.added_mm3 / room.volume() < 0.12
+    plain = support_inside_g(solid, room, PROFILE, 45)
+    assert plain > 0.5
+    for threshold in (0, 45):
+        assert support_inside_g(solid, vaults.cavity, PROFILE, threshold) < 0.1
