@@ -58,11 +58,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
+    parser.add_argument("--bare", action="store_true", help="without supports inside cavities")
     parser.add_argument("--json", type=Path, help="the rows as JSON too")
     chosen = parser.parse_args(arguments)
     rows = []
     for model, up in catalogue(chosen.catalogue, chosen.only):
-        rows.append(measure(model, up, chosen.size, chosen.profile))
+        rows.append(measure(model, up, chosen.size, chosen.profile, bare=chosen.bare))
         sys.stderr.write(json.dumps(rows[-1]) + "\n")
         chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
     if chosen.json:
@@ -78,12 +79,15 @@ def catalogue(path: Path, only: Sequence[str]) -> Iterator[tuple[Path, str]]:
     return ((model, up) for model, up in models if model.stem in only)
 
 
-def measure(model: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]:
+def measure(
+    model: Path, up: str, size_mm: float, profile: str, *, bare: bool = False
+) -> dict[str, Any]:
     """One row: the whole way from the model to the measured G-code, timed."""
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
-        hollow(model, up=up, size_mm=size_mm, profile=profile).write(part)
+        made = hollow(model, up=up, size_mm=size_mm, profile=profile, self_support=not bare)
+        made.write(part)
         found = verify(part)
     return {"model": model.stem, **figures(found), "seconds": time.perf_counter() - begun}
 

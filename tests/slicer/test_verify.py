@@ -181,11 +181,15 @@ def test_a_lean_out_of_reach_or_toward_one_side(block: Path):
     assert [item.rule for item in compare(barely, as_printed(barely, tilt_deg=-0.2))] == [
         "printed-tilt"
     ]
-    # Toward a corner a cube stands to atan √2, however soon it tips over an edge
-    diagonal = replace(part, lean=Lean(53.0, 45.0), tilt_deg=54.7)
+    # Toward a corner a square foot reaches √2 as far as toward an edge
+    steepness = SIDE / 2 / part.centre_mm[2]
+    corner, edge = np.degrees(np.arctan(steepness * np.array([2**0.5, 1.0])))
+    lean = float(edge + 4.0)
+    assert corner > lean
+    diagonal = replace(part, lean=Lean(lean, 45.0), tilt_deg=float(corner))
     assert list(compare(diagonal, as_printed(diagonal))) == []
-    edge = replace(part, lean=Lean(53.0, 0.0), tilt_deg=53.0)
-    assert [item.rule for item in compare(edge, as_printed(edge))] == ["printed-tilt"]
+    straight = replace(part, lean=Lean(lean, 0.0), tilt_deg=lean)
+    assert [item.rule for item in compare(straight, as_printed(straight))] == ["printed-tilt"]
 
 
 def test_bodies_that_do_not_touch_are_not_judged_as_one(block: Path):
