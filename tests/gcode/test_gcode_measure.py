@@ -327,3 +327,20 @@ def test_labelled_objects_are_told_apart(measured, label: str):
     text = "".join(f"{label.format(i)}\n{beads(layers=2)}" for i in (7, 8, 7))
     assert len(measured(text + FILAMENT).objects) == 2
     assert measured(beads() + FILAMENT).objects == ()
+
+
+def test_memory_stays_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Ten times the file must not take more memory: it is read in pieces."""
+    import tracemalloc
+
+    monkeypatch.setattr(measuring, "_PIECE_BYTES", 1 << 16)
+    path = tmp_path / "long.gcode"
+    peaks = []
+    for layers in (60, 600):
+        path.write_text(beads(layers=layers) + FILAMENT)
+        tracemalloc.start()
+        measure_gcode(path)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert path.stat().st_size > 1e6
+    assert peaks[1] < 1.2 * peaks[0]
