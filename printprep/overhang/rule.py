@@ -11,7 +11,8 @@ An island is a piece of M, enclosed by V, with no material at all under it.
 
 Nearly all layers are acquitted without opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋,
 so what is flagged lies in the suspect (V₋ ⊖ off) − (V ⊖ c), which is empty wherever
-tan θ ≤ (off − c) / h.  The rest is looked at exactly, around the suspects only.
+tan θ ≤ (off − c) / h.  Most of the others are by (V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.
+The rest is looked at exactly, around the suspects only.
 """
 
 from __future__ import annotations
@@ -150,8 +151,11 @@ def _ceilings(
     here: CrossSection, below: CrossSection, z_mm: float, rule: Acceptance
 ) -> Iterator[Flagged]:
     """Patches of the layer whose void is ``here``, over a layer whose void is ``below``."""
-    suspect = grown(below, -rule.off_mm) - grown(here, -rule.closing_mm)
+    within, narrowed = grown(below, -rule.off_mm), grown(here, -rule.closing_mm)
     islands = new_pieces(here, below)
+    suspect = within - narrowed
+    if suspect.area() >= LEAST_AREA_MM2:
+        suspect = within - grown(narrowed, rule.closing_mm)
     if suspect.area() < LEAST_AREA_MM2 and not islands:
         return
     window = windows([*suspect.to_polygons(), *islands], AROUND_MM)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.capitals import Capitals, cover
+from printprep.cavity.vaults.capitals import cover
 from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
 from printprep.cavity.vaults.dexels import Dexels
@@ -17,12 +17,14 @@ from printprep.cavity.vaults.forest import Forest
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members
 from printprep.cavity.vaults.mend import mending
-from printprep.cavity.vaults.solids import BEYOND_MM, capital_solids, column_solids
+from printprep.cavity.vaults.solids import Frustum, columns, funnels
 from printprep.mesh.measure import bodies, together
 from printprep.overhang.limits import Acceptance, acceptance
 from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from manifold3d import Manifold
 
     from printprep.profiles import Profile
@@ -41,6 +43,7 @@ class Vaults:
 
     cavity : the room without the vaults;  solids : the vaults, room minus cavity.
     samples, capitals, columns : how many;  added_mm3 : volume of the solids.
+    thinnest_mm : least thickness of a column or of a capital's neck, across its axis.
     unsupported_mm2, islands : what the acceptance rule still flags, over all of its phases.
     """
 
@@ -50,6 +53,7 @@ class Vaults:
     capitals: int
     columns: int
     added_mm3: float
+    thinnest_mm: float | None
     unsupported_mm2: float
     islands: int
 
@@ -76,22 +80,32 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
         landings = Landings.of(dexels, members, float(capitals.node_mm[:, 2].max()))
         raise_columns(capitals.node_mm, dexels, landings, members, forest)
         set_feet(forest, dexels, members)
-    count, columns = len(capitals.node_mm), forest.columns
-    cavity = _without(room, capitals, forest, members)
+    pieces = funnels(capitals, members) + columns(forest, members)
+    cavity = _without(room, pieces, members)
     flagged = _flagged(cavity, rule, (-np.inf, np.inf))
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
         capitals, forest = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM)
-        count, columns = count + len(capitals.node_mm), columns + forest.columns
-        cavity = _without(cavity, capitals, forest, members)
-        low = min(forest.lowest_mm, float(capitals.node_mm[:, 2].min()))
-        high = float(capitals.top_mm.max()) + BEYOND_MM
-        flagged = _flagged(cavity, rule, (low - rule.layer_mm, high + 2 * rule.layer_mm))
+        more = funnels(capitals, members) + columns(forest, members)
+        cavity = _without(cavity, more, members)
+        low = min(float(piece.low[2]) for piece in more) - rule.layer_mm
+        high = max(float(piece.high[2]) for piece in more) + 2 * rule.layer_mm
+        flagged = _flagged(cavity, rule, (low, high))
+        pieces += more
     left = Unsupported(tuple(flagged))
-    solids = room - cavity if count else Manifold()
-    added = float(room.volume() - cavity.volume())
-    return Vaults(cavity, solids, len(samples), count, columns, added, left.area_mm2, left.islands)
+    widening = sum(piece.high_radius_mm > piece.low_radius_mm for piece in pieces)
+    return Vaults(
+        cavity=cavity,
+        solids=room - cavity if pieces else Manifold(),
+        samples=len(samples),
+        capitals=widening,
+        columns=len(pieces) - widening,
+        added_mm3=float(room.volume() - cavity.volume()),
+        thinnest_mm=min((piece.across_mm for piece in pieces), default=None),
+        unsupported_mm2=left.area_mm2,
+        islands=left.islands,
+    )
 
 
 def _slope_deg(rule: Acceptance) -> float:
@@ -104,13 +118,12 @@ def _slope_deg(rule: Acceptance) -> float:
     return math.degrees(math.atan((rule.off_mm - rule.closing_mm / 2) / rule.layer_mm))
 
 
-def _without(room: Manifold, capitals: Capitals, forest: Forest, members: Members) -> Manifold:
+def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:
     """The room less what is built in it and what is then too small to keep."""
     from manifold3d import Manifold, OpType
 
-    pieces = capital_solids(capitals, members) + column_solids(forest, members)
     if pieces:
-        room = room - Manifold.batch_boolean(pieces, OpType.Add)
+        room = room - Manifold.batch_boolean([piece.solid() for piece in pieces], OpType.Add)
     return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
 
 

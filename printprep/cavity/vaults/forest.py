@@ -43,15 +43,6 @@ class Forest:
     def __len__(self) -> int:
         return len(self._place)
 
-    @property
-    def columns(self) -> int:
-        return sum(lower >= 0 for lower in self.down)
-
-    @property
-    def lowest_mm(self) -> float:
-        """Height of the lowest place."""
-        return float(min(place[2] for place in self._place))
-
     def place(self, index: int) -> Float:
         return self._place[index]
 

@@ -6,11 +6,12 @@ frustum between two of them has flat sides.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import try_manifold
+from printprep.mesh.measure import from_arrays
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from printprep.cavity.vaults.capitals import Capitals
     from printprep.cavity.vaults.forest import Forest
     from printprep.cavity.vaults.members import Members
-    from printprep.types import Float
+    from printprep.types import Float, Int
 
 SIDES = 12
 # Solids that only touch would leave coincident faces: each goes on so far into the next.
@@ -27,21 +28,47 @@ INTO_MM = 0.03
 BEYOND_MM = 0.3
 
 
-def capital_solids(capitals: Capitals, members: Members) -> list[Manifold]:
-    """Funnels, from each node up to a little over its top."""
-    solids = []
+@dataclass(frozen=True, eq=False)
+class Frustum:
+    """What lies between two horizontal discs, middles (x, y, z), ``low`` under ``high``."""
+
+    low: Float
+    low_radius_mm: float
+    high: Float
+    high_radius_mm: float
+
+    @property
+    def across_mm(self) -> float:
+        """Its least thickness across its axis."""
+        way = self.high - self.low
+        cosine = float(way[2] / np.linalg.norm(way))
+        return 2 * min(self.low_radius_mm, self.high_radius_mm) * cosine
+
+    def solid(self) -> Manifold:
+        """With regular polygons around the discs."""
+        turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
+        ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(SIDES)], axis=1)
+        ring /= np.cos(np.pi / SIDES)
+        lower = self.low + self.low_radius_mm * ring
+        return from_arrays(np.concatenate([lower, self.high + self.high_radius_mm * ring]), _FACES)
+
+
+def funnels(capitals: Capitals, members: Members) -> list[Frustum]:
+    """Capitals, from each node up to a little over its top."""
+    found = []
     for node, top in zip(capitals.node_mm, capitals.top_mm, strict=True):
         rise = max(float(top - node[2]), 0.0) + BEYOND_MM
-        upper = node + np.array([0.0, 0.0, rise])
-        solids.append(
-            frustum(node, members.radius_mm, upper, members.radius_mm + rise * members.tan)
-        )
-    return solids
+        wide = members.radius_mm + rise * members.tan
+        found.append(Frustum(node, members.radius_mm, node + np.array([0.0, 0.0, rise]), wide))
+    return found
 
 
-def column_solids(forest: Forest, members: Members) -> list[Manifold]:
-    """Frustums between the places of a forest, thick enough for what they carry."""
-    solids = []
+def columns(forest: Forest, members: Members) -> list[Frustum]:
+    """Between the places of a forest, from above, thick enough for what they carry.
+
+    None begins narrower than those that lean on it end, so that every joint is covered.
+    """
+    found = []
     radius = np.zeros(len(forest))
     places = np.array([forest.place(index) for index in range(len(forest))]).reshape(-1, 3)
     for index in np.argsort(-places[:, 2], kind="stable").tolist():
@@ -50,7 +77,8 @@ def column_solids(forest: Forest, members: Members) -> list[Manifold]:
             continue
         way = places[lower] - places[index]
         fall, length = -float(way[2]), float(np.linalg.norm(way))
-        if fall <= 0:
+        if fall <= 0:  # two tips in one place
+            radius[lower] = max(float(radius[lower]), float(radius[index]))
             continue
         above = forest.above_mm[index]
         thick = members.across_mm(np.array([above, above + length])) * length / fall
@@ -58,22 +86,11 @@ def column_solids(forest: Forest, members: Members) -> list[Manifold]:
         end = max(start, float(thick[1]))
         radius[lower] = max(float(radius[lower]), end)
         up = places[index] - way * (INTO_MM / fall)
-        solids.append(frustum(places[lower], end, up, start))
-    return solids
+        found.append(Frustum(places[lower], end, up, start))
+    return found
 
 
-def frustum(low: Float, low_radius: float, high: Float, high_radius: float) -> Manifold:
-    """The solid between regular polygons around two horizontal discs, middles (x, y, z)."""
-    turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
-    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(SIDES)], axis=1) / np.cos(np.pi / SIDES)
-    vertices = np.concatenate([low + low_radius * ring, high + high_radius * ring])
-    manifold, status = try_manifold(vertices, _FACES)
-    if status != "NoError":
-        raise ArithmeticError(f"a frustum from {low} to {high} is no solid: {status}")
-    return manifold
-
-
-def _faces() -> np.ndarray:
+def _faces() -> Int:
     faces = []
     for i in range(SIDES):
         j = (i + 1) % SIDES

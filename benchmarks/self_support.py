@@ -1,0 +1,139 @@
+"""Vault every room of a catalogue's models, and have the real slicer judge what is inside.
+
+    python benchmarks/self_support.py ../shared/models/catalogue.csv -o table.md [--size 100]
+
+The whole room is vaulted, before any of it is filled for stability: the hardest case.  Added share
+is of that room; flagged area and islands are judged at places of the layers that the building did
+not look at; grams of support are PrusaSlicer's, inside the cavity, at its automatic threshold and
+at 45°; the thinnest member is measured across the axis of each column's solid.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+
+from dev_rooms import room_of
+from support_inside import support_inside_g
+
+from printprep.cavity.vaults import vaulted
+from printprep.errors import PrintprepError
+from printprep.mesh.measure import shells
+from printprep.mesh.written import as_written
+from printprep.overhang.limits import acceptance
+from printprep.overhang.rule import unsupported_ceilings
+from printprep.profiles import Profile, load_profile
+
+COLUMNS = (
+    ("model", "model", "{}"),
+    ("room cm³", "room_cm3", "{:.1f}"),
+    ("capitals", "capitals", "{}"),
+    ("columns", "columns", "{}"),
+    ("added share", "share", "{:.3f}"),
+    ("added g", "added_g", "{:.2f}"),
+    ("flagged mm²", "flagged_mm2", "{:.3f}"),
+    ("islands", "islands", "{}"),
+    ("support auto g", "support_0_g", "{:.3f}"),
+    ("support 45° g", "support_45_g", "{:.3f}"),
+    ("thinnest mm", "thinnest_mm", "{:.3f}"),
+    ("seconds", "seconds", "{:.1f}"),
+    ("cpu s", "cpu_seconds", "{:.1f}"),
+)
+JUDGED_PHASES = (0.0, 0.2, 0.7)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("catalogue", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
+    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
+    parser.add_argument("--profile", default="fdm-pla-0.4")
+    parser.add_argument("--only", nargs="*", help="file stems, all without")
+    parser.add_argument("--no-slice", action="store_true")
+    parser.add_argument("--json", type=Path, help="the rows as JSON too")
+    arguments = parser.parse_args()
+    profile = load_profile(arguments.profile)
+    rows = []
+    for path, up in catalogue(arguments.catalogue, arguments.only):
+        try:
+            row = measure(path, up, arguments.size, profile, not arguments.no_slice)
+        except (PrintprepError, ArithmeticError) as error:
+            row = {"model": path.stem, "error": str(error)}
+        rows.append(row)
+        sys.stderr.write(json.dumps(row) + "\n")
+        arguments.output.write_text(markdown(rows), encoding="utf-8")
+        if arguments.json:
+            arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return 0 if all("error" not in row for row in rows) else 1
+
+
+def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
+    """The catalogue's dev models with the axis that is up."""
+    with path.open(encoding="utf-8", newline="") as handle:
+        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
+    models = [(path.parent / "dev" / row["file"], row["up"]) for row in rows]
+    return [pair for pair in models if not only or pair[0].stem in only]
+
+
+def measure(
+    path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool
+) -> dict[str, Any]:
+    """One row of the table."""
+    solid, room = room_of(path, up, size_mm, profile)
+    if room.is_empty():
+        return {"model": path.stem, "room_cm3": 0.0}
+    wall, cpu = time.perf_counter(), time.process_time()
+    vaults = vaulted(room, profile)
+    row: dict[str, Any] = {
+        "model": path.stem,
+        "seconds": time.perf_counter() - wall,
+        "cpu_seconds": time.process_time() - cpu,
+        "room_cm3": room.volume() / 1000,
+        "capitals": vaults.capitals,
+        "columns": vaults.columns,
+        "share": vaults.added_mm3 / room.volume(),
+        "added_g": vaults.added_mm3 * profile.material.density_g_cm3 / 1000,
+        "thinnest_mm": vaults.thinnest_mm,
+    }
+    if vaults.cavity.is_empty():
+        return row
+    written = as_written(solid - vaults.cavity)
+    rule = acceptance(profile)
+    found = [
+        [unsupported_ceilings(void, rule, phase) for void in shells(written)[1]]
+        for phase in JUDGED_PHASES
+    ]
+    row["flagged_mm2"] = max(sum(item.area_mm2 for item in phase) for phase in found)
+    row["islands"] = max(sum(item.islands for item in phase) for phase in found)
+    if slice_it:
+        for threshold in (0, 45):
+            grams = support_inside_g(solid, vaults.cavity, profile, threshold)
+            row[f"support_{threshold}_g"] = grams
+    return row
+
+
+def markdown(rows: list[dict[str, Any]]) -> str:
+    lines = [
+        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
+        "|" + "---|" * len(COLUMNS),
+    ]
+    for row in rows:
+        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
+        lines.append("| " + " | ".join(cells) + " |")
+    shares = [row["share"] for row in rows if "share" in row]
+    if shares:
+        lines += ["", f"Mean added share {np.mean(shares):.4f} of {len(shares)} rooms."]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
