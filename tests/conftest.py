@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import os
 import shutil
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from collection import CatalogueModel
 from hypothesis import settings
 
 settings.register_profile("default", deadline=None, derandomize=True)
@@ -20,15 +20,6 @@ MODELS = Path(os.environ.get("PRINTPREP_MODELS", ROOT.parent / "shared" / "model
 
 def _required() -> bool:
     return os.environ.get("PRINTPREP_REQUIRE_TOOLS") == "1"
-
-
-@dataclass(frozen=True)
-class CatalogueModel:
-    """One row of the collection: ``path`` to the file, ``up`` as the command line takes it."""
-
-    path: Path
-    up: str
-    may_ship: bool
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import CatalogueModel
+from collection import CatalogueModel
 from dev_table import measure
 
 WALL_MM, LEAN_DEG = 1.2, 10.0

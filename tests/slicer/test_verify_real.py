@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import CatalogueModel
+from collection import CatalogueModel
 from verify_table import agrees, markdown, measure
 
 SIZE_MM = 60.0  # the table is made at 100: this is for every change
