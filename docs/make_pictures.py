@@ -1,6 +1,6 @@
 """Draw the README's pictures again: a sample as it came, and its part cut open.
 
-    python docs/make_pictures.py
+python docs/make_pictures.py
 """
 
 from __future__ import annotations
