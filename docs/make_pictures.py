@@ -16,7 +16,7 @@ SIZE = 400
 
 
 def main() -> None:
-    result = printprep.hollow(HERE.parent / "samples" / "spot.stl")
+    result = printprep.hollow(HERE.parent / "samples" / "spot.stl", self_support=True)
     pictures = HERE / "pictures"
     pictures.mkdir(exist_ok=True)
     # The thumbnail's eye looks from the front right; the cut face is turned toward it.

@@ -37,7 +37,7 @@ def hollow(
     lean: float | str | Lean | None = None,
     objective: Objective = "lean",
     base: BasePolicy = "auto",
-    self_support: bool = True,
+    self_support: bool = False,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the lean asked for.

@@ -84,10 +84,10 @@ Examples:
 )
 @click.option(
     "--self-support/--no-self-support",
-    default=True,
+    default=False,
     show_default=True,
     help="Carry the ceilings of cavities by vaults inside them, so that they print without "
-    "support (filament only).",
+    "support (filament only; takes half a minute and more).",
 )
 @output_form_options("none")
 def command(

@@ -44,10 +44,8 @@ def test_a_cylinder_comes_out_hollow_checked_and_the_same_twice(workshop: Path):
     inner = 32 * (12 - 1.2) ** 2 * math.sin(2 * math.pi / 64)
     lightest_g = (area * 30 - inner * 27.6) * 1.24e-3
     # Never lighter than walls of the profile's less the tolerance, and close to them.
-    walls_g = data["mass_g"] - data["supports"]["added_g"]
-    assert 0.93 * lightest_g < walls_g < 1.1 * lightest_g
-    # Its flat ceiling is carried from inside, and the slicer's supports need no fence.
-    assert data["supports"]["columns"] > 0 and data["supports"]["unsupported_mm2"] == 0
+    assert 0.93 * lightest_g < data["mass_g"] < 1.1 * lightest_g
+    assert data["supports"] is None
     assert data["wall_min_mm"] >= 1.15
     assert data["cavities"]["count"] == 1
     assert data["tilt_deg"] >= data["lean_deg"] == 10

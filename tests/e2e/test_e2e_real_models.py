@@ -53,4 +53,18 @@ def test_a_real_model_is_hollowed_and_prints(
         assert row["reachable_deg"] < LEAN_DEG
         assert "lean-out-of-reach" in row["errors"]
     assert row["mass_g"] <= row["solid_mass_g"] * 1.02
+
+
+@pytest.mark.slicer
+@pytest.mark.corpus
+@pytest.mark.parametrize("stem", ["cow", "fuze"])
+def test_a_real_model_carries_its_own_ceilings(
+    stem: str, dev_models: dict[str, CatalogueModel], prusa_slicer: Path
+) -> None:
+    model = dev_models[stem]
+    row = measure(model.path, model.up, 60.0, "fdm-pla-0.4", slice_it=False, vaults=True)
+    assert row["exit"] == 0, row
+    assert (row["lib3mf"], row["manifold"]) == ("clean", "yes")
+    assert row["judged_wall_mm"] >= WALL_MM - 0.05
     assert row["unsupported_mm2"] == 0 and row["islands"] == 0
+    assert row["tilt_deg"] >= LEAN_DEG

@@ -45,7 +45,6 @@ def test_a_point_is_what_hollow_finds(found: Exploration, prism: Path) -> None:
         base="never",
         resolution=32,
         lean=point.lean_deg,
-        self_support=False,
         overrides={"stability.lean_margin_deg": 0.0},
     )
     certificate = result.density.certificate

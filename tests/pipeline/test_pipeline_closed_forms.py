@@ -20,8 +20,7 @@ GRAMS = 1.24 / 1000
 
 def hollowed(manifold: Manifold, **options: object) -> HollowResult:
     mesh = trimesh.Trimesh(*arrays(manifold), process=False)
-    plain = {"resolution": 48, "self_support": False}
-    return hollow(mesh, **{**plain, **options})  # type: ignore[arg-type]
+    return hollow(mesh, **{"resolution": 48, **options})  # type: ignore[arg-type]
 
 
 def test_a_cube_becomes_a_box_with_even_walls() -> None:
