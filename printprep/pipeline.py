@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import trimesh
     from manifold3d import Manifold
 
+    from printprep.density.outcome import PaperSolver
     from printprep.density.program import BasePolicy
     from printprep.profiles import Profile
     from printprep.types import Model, Solid, Supports
@@ -36,6 +37,8 @@ def hollow(
     resolution: int = 64,
     lean: float | str | Lean | None = None,
     objective: Objective = "lean",
+    solver: PaperSolver = "plane",
+    device: str = "cpu",
     base: BasePolicy = "auto",
     self_support: bool = False,
     progress: Progress = SILENT,
@@ -53,6 +56,8 @@ def hollow(
     lean : degrees at which the part must stand, or "15@90" for 15° toward the azimuth of 90°;
         None takes the profile's.
     objective : "lean", the linear program, or "paper", DensiCrafter's objective solved as a plane.
+    solver : of the paper's objective: "plane", exact, or "adam", as the paper descends, on a torch
+        ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet.
     self_support : carry the cavities' ceilings from inside, where the process needs it (fdm).
 
@@ -75,6 +80,7 @@ def hollow(
     settings = load_profile(profile, overrides or {})
     asked = lean_of(lean, settings.stability.lean_deg)
     _check_resolution(resolution)
+    _check_solver(objective, solver, device)
     clock = Stopwatch(progress)
     with clock.stage("read"):
         placed = placed_model(model, units, up, scale, height_mm, size_mm)
@@ -101,8 +107,11 @@ def hollow(
         program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
         choice = program.choose(base, asked)
     with clock.stage("solve"):
-        settle = settle_paper if objective == "paper" else settle_lean
-        density, part, standing = settle(solid, room, program, choice, asked)
+        if objective == "paper":
+            found = settle_paper(solid, room, program, choice, solver, device)
+        else:
+            found = settle_lean(solid, room, program, choice, asked)
+        density, part, standing = found
     advice = None
     if density.reachable_deg is not None:
         with clock.stage("advice"):
@@ -213,6 +222,18 @@ def _with_free_supports(profile: Profile, supports: Supports) -> Profile:
     kept.pop("support_material_buildplate_only", None)
     slicer = profile.slicer.model_copy(update={"object_settings": kept})
     return profile.model_copy(update={"slicer": slicer})
+
+
+def _check_solver(objective: str, solver: str, device: str) -> None:
+    from printprep.errors import UsageError
+
+    if objective != "paper" and solver != "plane":
+        raise UsageError(
+            "The lean program is solved exactly; a solver belongs to the paper's objective.",
+            "Leave --solver out, or ask for --objective paper.",
+        )
+    if solver == "plane" and device != "cpu":
+        raise UsageError("Only the solver adam runs on another device.", "Add --solver adam.")
 
 
 def _check_resolution(resolution: int) -> None:

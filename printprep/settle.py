@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.cavity.carve import cavities_of, cut, make_part
-from printprep.density.outcome import density_of, paper_density
+from printprep.cavity.surface import isosurface
+from printprep.density.outcome import PaperSolver, density_of, paper_density
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability
+from printprep.voxel.distance import DepthField
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.density.program import Choice, Program
-    from printprep.types import Base, Density, Lean, Part, Plane, Solid, Stability
+    from printprep.types import Base, Density, Domain, Lean, Part, Plane, Solid, Stability
 
 # A new solve aims higher by what was lost and this much more.
 SAFETY_DEG = 0.02
@@ -56,15 +58,39 @@ def settle_lean(
 
 
 def settle_paper(
-    solid: Solid, room: Manifold, program: Program, choice: Choice, lean: Lean
+    solid: Solid,
+    room: Manifold,
+    program: Program,
+    choice: Choice,
+    solver: PaperSolver = "plane",
+    device: str = "cpu",
 ) -> tuple[Density, Part, Stability]:
     """The part of the paper's objective, on the base that the lean program chose.
 
-    The objective knows no lean: it stands as far as it stands.  One plane serves all bodies.
+    The objective knows no lean: it stands as far as it stands.  One plane serves all bodies; where
+    Adam leaves densities instead, the cavity is where they are below one half.
     """
-    density = paper_density(program, choice)
+    density = paper_density(program, choice, solver, device)
+    if solver == "adam":
+        room = room ^ _below_half(density, program.interior.domain)
     part = carve(solid, choice.base, room, program, density.planes)
     return density, part, stability(part.manifold, program.profile.printer.first_layer_mm)
+
+
+def _below_half(density: Density, domain: Domain) -> Manifold:
+    """Where the free voxels' density is below one half, and walls do not count.
+
+    Voxels that are not free take the density of the nearest that is: where the wall begins the
+    room for cavities says, to far below a voxel.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    free = domain.share > 0.5
+    if not free.any():
+        return isosurface(DepthField(domain.grid, np.full(domain.grid.shape, -1, np.float32)), 0.0)
+    nearest = distance_transform_edt(~free, return_distances=False, return_indices=True)
+    emptiness = (0.5 - density.rho[tuple(nearest)]).astype(np.float32)
+    return isosurface(DepthField(domain.grid, emptiness), 0.0)
 
 
 def carve(

@@ -65,6 +65,16 @@ Examples:
     help="lean: the lightest part that stands at the lean. paper: DensiCrafter's weighted sum.",
 )
 @click.option(
+    "--solver",
+    type=click.Choice(("plane", "adam")),
+    default="plane",
+    show_default=True,
+    help="Of the paper's objective: its exact plane, or Adam as the paper descends.",
+)
+@click.option(
+    "--device", default="cpu", show_default=True, help="Where Adam runs: cpu, cuda or cuda:N."
+)
+@click.option(
     "--base",
     type=click.Choice(("auto", "never", "always")),
     default="auto",

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from printprep.density.program import Choice, Program
 from printprep.types import Certificate, Density, Plane
 from printprep.voxel.domain import with_base
+
+PaperSolver = Literal["plane", "adam"]
 
 
 def density_of(choice: Choice, program: Program) -> Density:
@@ -40,8 +44,14 @@ def density_of(choice: Choice, program: Program) -> Density:
     )
 
 
-def paper_density(program: Program, choice: Choice) -> Density:
-    """The paper's objective on the same voxels: walls and base in mm, its terms in voxels."""
+def paper_density(
+    program: Program, choice: Choice, solver: PaperSolver = "plane", device: str = "cpu"
+) -> Density:
+    """The paper's objective on the same voxels: walls and base in mm, its terms in voxels.
+
+    solver : "plane", exact, or "adam", the paper's own descent, on a torch ``device``; Adam's
+    result has no plane, only densities.
+    """
     from printprep.density.objective import PaperSettings
     from printprep.density.paper_domain import PaperDomain
     from printprep.density.plane import solve_plane
@@ -56,7 +66,13 @@ def paper_density(program: Program, choice: Choice) -> Density:
     ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
     nothing = np.zeros_like(free)
     voxels = PaperDomain(solid, solid & ~free, free, nothing, free, ground)
-    solution = solve_plane(voxels, PaperSettings(resolution=max(domain.grid.shape)))
+    settings = PaperSettings(resolution=max(domain.grid.shape))
+    if solver == "adam":
+        from printprep.density.adam import solve_adam
+
+        solution = solve_adam(voxels, settings, device=device)
+    else:
+        solution = solve_plane(voxels, settings)
     plane = None if solution.plane is None else solution.plane.in_mm(domain.grid)
     return Density(
         rho=solution.smoothed,

@@ -38,7 +38,8 @@ def test_defaults_are_those_of_the_method(handed, capsys):
     expected = {
         "profile": "fdm-pla-0.4", "overrides": {}, "units": None, "up": "+z", "scale": None,
         "height_mm": None, "size_mm": None, "resolution": 64, "lean": None,
-        "objective": "lean", "base": "auto", "self_support": False,
+        "objective": "lean", "solver": "plane", "device": "cpu", "base": "auto",
+        "self_support": False,
     }  # fmt: skip
     assert {key: handed[key] for key in expected} == expected
     assert Path("model-hollow.3mf").is_file()  # in the current folder, not beside the model

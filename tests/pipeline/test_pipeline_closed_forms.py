@@ -220,3 +220,19 @@ def test_vaults_are_weighed_in_the_program() -> None:
     assert "support_material_buildplate_only" not in held.profile.slicer.object_settings
     assert "support_material_buildplate_only" in plain.profile.slicer.object_settings
     assert plain.supports is None
+
+
+def test_adam_comes_to_about_what_the_plane_is() -> None:
+    prism = solids.leaning_prism(20, 60, 12)
+    options = {"objective": "paper", "resolution": 32, "base": "never"}
+    plane = hollowed(prism, **options)
+    adam = hollowed(prism, solver="adam", **options)
+    assert adam.density.planes == (None,)
+    assert adam.mass_g == pytest.approx(plane.mass_g, rel=0.05)
+    assert adam.wall_min_mm is None or adam.wall_min_mm >= WALL - 0.05
+
+
+@pytest.mark.parametrize("options", [{"solver": "adam"}, {"objective": "paper", "device": "cuda"}])
+def test_a_solver_or_device_that_would_be_ignored_is_refused(options: dict[str, object]) -> None:
+    with pytest.raises(UsageError, match="solver"):
+        hollowed(solids.box(10, 10, 10), **options)
