@@ -43,7 +43,8 @@ def test_a_real_model_is_hollowed_and_prints(
     assert (row["lib3mf"], row["manifold"], row["sliced"]) == ("clean", "yes", "yes")
     if row["judged_wall_mm"] is not None:
         assert row["judged_wall_mm"] >= WALL_MM - 0.05
-        assert row["wall_min_mm"] == pytest.approx(row["judged_wall_mm"], abs=0.02)
+        # Ours is exact between triangles, the judge's between vertices and triangles: no thinner.
+        assert WALL_MM - 0.05 <= row["wall_min_mm"] <= row["judged_wall_mm"] + 1e-4
     if row["repair"] == "as-is":
         assert row["outside_moved_mm"] <= 0.001
     if row["reachable_deg"] is None:
