@@ -15,11 +15,11 @@ from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import set_feet
 from printprep.cavity.vaults.forest import Forest
 from printprep.cavity.vaults.landings import Landings
-from printprep.cavity.vaults.members import Members
+from printprep.cavity.vaults.members import Members, built_for
 from printprep.cavity.vaults.mend import mending
 from printprep.cavity.vaults.solids import Frustum, columns, funnels
 from printprep.mesh.measure import bodies, together
-from printprep.overhang.limits import Acceptance, acceptance
+from printprep.overhang.limits import Acceptance
 from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Vaults:
     cavity : the room without the vaults;  solids : the vaults, room minus cavity.
     samples, capitals, columns : how many;  added_mm3 : volume of the solids.
     thinnest_mm : least thickness of a column or of a capital's neck, across its axis.
-    unsupported_mm2, islands : what the acceptance rule still flags, over all of its phases.
+    unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases.
     """
 
     cavity: Manifold
@@ -70,7 +70,7 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     """
     from manifold3d import Manifold
 
-    members, rule = Members.of(profile), acceptance(profile)
+    members, rule = Members.of(profile), built_for(profile)
     slope_deg = min(_slope_deg(rule), profile.overhang_deg)
     samples = ceiling_samples(room, slope_deg)
     capitals = cover(samples, members, SPACING_MM**2)
@@ -86,8 +86,7 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
-        capitals, forest = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM)
-        more = funnels(capitals, members) + columns(forest, members)
+        more = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
         cavity = _without(cavity, more, members)
         low = min(float(piece.low[2]) for piece in more) - rule.layer_mm
         high = max(float(piece.high[2]) for piece in more) + 2 * rule.layer_mm
@@ -115,7 +114,7 @@ def _slope_deg(rule: Acceptance) -> float:
     slopes between end in a wall and pass; carrying them all would add a tenth to the vaults.  The
     few that do close are found by the rule, and mended.
     """
-    return math.degrees(math.atan((rule.off_mm - rule.closing_mm / 2) / rule.layer_mm))
+    return math.degrees(math.atan((rule.off_mm - rule.closing_mm / 4) / rule.layer_mm))
 
 
 def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:

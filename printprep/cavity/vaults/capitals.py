@@ -1,7 +1,7 @@
 """Capitals: funnels, round discs that widen upward at θ, that together touch every ceiling sample.
 
 Notation: node n the middle of a funnel's lower disc, r its radius, q a sample, d = |q − n| seen
-from above, s = 0.12 mm what neighbouring funnels must overlap between samples.  A funnel carries q
+from above, s = 0.06 mm what neighbouring funnels must overlap between samples.  A funnel carries q
 where d ≤ r + (q_z − n_z) tan θ − s; over q it is q_z − n_z − max(0, d − r) / tan θ thick.
 
 Weighted set cover by the greedy rule (Chvátal 1979): the funnel with the most newly carried area
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from printprep.cavity.vaults.members import Members
     from printprep.types import Float, Int
 
-OVERLAP_MM = 0.12
+OVERLAP_MM = 0.06
 # What a column is taken to cost before it is known; the result is flat in it.
 COLUMN_MM3 = 8.0
 CANDIDATE_STEP_MM = 0.7

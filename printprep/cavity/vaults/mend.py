@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.capitals import Capitals, cover
+from printprep.cavity.vaults.capitals import cover
 from printprep.cavity.vaults.ceiling import SPACING_MM
+from printprep.cavity.vaults.columns import FOOT_MM
 from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import STEP_MM, nearest_feet, set_feet
-from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.forest import Axes, Forest
+from printprep.cavity.vaults.solids import Frustum, columns, funnels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,19 +31,45 @@ def mending(
     layer_mm: float,
     members: Members,
     dexel_mm: float,
-) -> tuple[Capitals, Forest]:
-    """Funnels and columns that carry flagged patches."""
+    axes: Axes,
+) -> list[Frustum]:
+    """Funnels under flagged patches, each on a column of its own.
+
+    It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick there as
+    the column it enters, so that nothing of its foot stands out.
+    """
     points = np.concatenate([_points(patch, layer_mm) for patch in flagged])
     capitals = cover(points, members, SPACING_MM**2)
     dexels = Dexels.of(cavity, dexel_mm)
     nodes = capitals.node_mm
     deepest = float(nodes[:, 2].max()) - dexels.floor_mm + STEP_MM
-    _, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
+    price, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
     forest = Forest()
-    for node, foot in zip(nodes, feet, strict=True):
-        forest.stand(forest.plant(node), foot)
+    props = []
+    for node, foot, cost in zip(nodes, feet, price.tolist(), strict=True):
+        prop = _on_axis(node, cost, axes, members)
+        if prop is None:
+            forest.stand(forest.plant(node), foot)
+        else:
+            props.append(prop)
     set_feet(forest, dexels, members)
-    return capitals, forest
+    return funnels(capitals, members) + columns(forest, members) + props
+
+
+def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frustum | None:
+    """The column to the nearest point of an axis, where that is shorter than ``cost_mm``."""
+    fall = node[2] - axes.place_mm[:, 2]
+    d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
+    # It may widen upward by the difference of its lean's radius and an upright column's.
+    spare = members.leaning_radius_mm - members.radius_mm
+    reach = (d + spare <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
+    weighed = np.where(reach, fall + d**2 / np.where(reach, fall, 1.0), np.inf)
+    best = int(np.argmin(weighed)) if len(weighed) else -1
+    if best < 0 or weighed[best] >= cost_mm:
+        return None
+    slope = float(np.sqrt(weighed[best] / fall[best]))
+    radius = float(members.across_mm(axes.above_mm[best : best + 1])[0])
+    return Frustum(axes.place_mm[best], radius, node, max(radius, members.radius_mm * slope))
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:
