@@ -136,7 +136,7 @@ def _candidates(corners: Float, columns: Float) -> Iterator[tuple[Int, Int]]:
         return
     rows = max(1, int(np.sqrt(len(columns))))
     low = columns.min(axis=0)
-    height = max(float(np.ptp(columns[:, 1])) / rows, np.finfo(np.float64).tiny)
+    height = float(np.ptp(columns[:, 1])) / rows or 1.0  # all on one line: any row will do
     row = np.minimum(((columns[:, 1] - low[1]) / height).astype(np.int64), rows - 1)
     # One ascending key for all rows: each row has a stretch of its own, wider than any x.
     stretch = 4 * max(float(np.ptp(columns[:, 0])), np.finfo(np.float64).tiny)
