@@ -98,7 +98,7 @@ def figures(found: Verified) -> dict[str, Any]:
     said = printed.said.filament_mm3
     return {
         "slicer": found.slicer,
-        "bodies": part.bodies,
+        "bodies": len(part.bodies),
         "lean_deg": part.lean.angle_deg,
         "computed_g": part.mass_g,
         "printed_g": printed.mass_g,

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from printprep.gcode.state import Listener, numbers
 
 DIAMETER_MM = 1.75
 DENSITY_G_CM3 = 1.24
 
-Key = tuple[str, int, bool]  # feature, extruder, volumetric
+
+class Key(NamedTuple):
+    """What is added up apart: body is an index into those given, 0 without any."""
+
+    feature: str
+    tool: int
+    volumetric: bool
+    body: int = 0
 
 
 class Filament:
@@ -36,12 +44,12 @@ class Filament:
 
     def mm3(self, key: Key) -> float:
         """Of one unit of E."""
-        if key[2] or self._volumetric:
+        if key.volumetric or self._volumetric:
             return 1.0
-        return math.pi / 4 * _of(self._diameters, key[1]) ** 2
+        return math.pi / 4 * _of(self._diameters, key.tool) ** 2
 
     def g_cm3(self, key: Key) -> float:
-        return _of(self._densities, key[1])
+        return _of(self._densities, key.tool)
 
 
 def _of(values: Sequence[float], tool: int) -> float:

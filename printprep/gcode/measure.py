@@ -22,6 +22,7 @@ def measure_gcode(
     path: str | Path,
     *,
     cavities: Sequence[Manifold] = (),
+    bodies: Sequence[Manifold] = (),
     left_out: Collection[str] = LEFT_OUT,
     diameter_mm: float | None = None,
     density_g_cm3: float | None = None,
@@ -31,6 +32,7 @@ def measure_gcode(
     Parameters
     ----------
     cavities : solids that should stay empty, in the G-code's coordinates.
+    bodies : solids that do not touch, likewise, to be balanced each by itself.
     left_out : names of features (:mod:`printprep.gcode.features`) that are no part of the model.
     diameter_mm, density_g_cm3 : of the filament, where the file should not be asked.
 
@@ -43,7 +45,7 @@ def measure_gcode(
 
     path = Path(path)
     listener = Listener()
-    tally = Tally(listener, path.name, cavities)
+    tally = Tally(listener, path.name, cavities, bodies)
     for piece in _pieces(path):
         tally.add(piece)
     return tally.result(left_out, diameter_mm, density_g_cm3)

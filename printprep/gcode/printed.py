@@ -30,6 +30,20 @@ class Said:
 
 
 @dataclass(frozen=True, eq=False)
+class Balance:
+    """How a print, or one body of it, stands; as ``Printed`` says.
+
+    Without contact with the bed the polygon is empty and ``tilt_deg`` None.
+    """
+
+    mass_g: float
+    centre_of_mass_mm: tuple[float, float, float]
+    contact_polygon_mm: Float
+    contact_area_mm2: float
+    tilt_deg: float | None
+
+
+@dataclass(frozen=True, eq=False)
 class Printed:
     """Measured from the moves; mm of the machine, heights above the underside of the lowest layer.
 
@@ -38,6 +52,7 @@ class Printed:
     contact_polygon_mm : (k, 2) counter-clockwise hull of the first layer, each bead as wide as the
     file says;  contact_area_mm2 : of the beads' union.
     tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself.
+    bodies : each by itself, in the order they were given; empty where none were.
     feature_mass_g, feature_volume_mm3 : by feature, what is left out too.
     bounds_mm : (2, 3) low and high corners of what stays, whole beads; z of the machine.
     objects : labels of the objects printed, where the file labels them.
@@ -54,6 +69,7 @@ class Printed:
     contact_polygon_mm: Float
     contact_area_mm2: float
     tilt_deg: float
+    bodies: tuple[Balance, ...]
     feature_mass_g: Mapping[str, float]
     feature_volume_mm3: Mapping[str, float]
     left_out: tuple[str, ...]

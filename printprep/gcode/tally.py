@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import InputError
+from printprep.gcode.balance import balance_of
+from printprep.gcode.bodies import Bodies
 from printprep.gcode.features import CUSTOM, SUPPORT, UNLABELLED
 from printprep.gcode.filament import Filament, Key
-from printprep.gcode.first_layer import SAME_LAYER_MM, LowestBeads, union_of
+from printprep.gcode.first_layer import SAME_LAYER_MM, LowestBeads
 from printprep.gcode.heights import Heights
 from printprep.gcode.inside import Cavities
 from printprep.gcode.moments import COLUMNS, inertia_about_centre, moments_of, sums_by
@@ -23,7 +25,6 @@ from printprep.gcode.printed import Printed
 from printprep.gcode.said import said_of
 from printprep.gcode.state import Listener, State
 from printprep.gcode.words import read_rows
-from printprep.stand.contact import contact_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -36,10 +37,18 @@ if TYPE_CHECKING:
 class Tally:
     """Sums over the pieces heard so far."""
 
-    def __init__(self, listener: Listener, name: str, cavities: Sequence[Manifold]) -> None:
+    def __init__(
+        self,
+        listener: Listener,
+        name: str,
+        cavities: Sequence[Manifold],
+        bodies: Sequence[Manifold],
+    ) -> None:
         self._listener = listener
         self._name = name
         self._cavities = Cavities(cavities) if cavities else None
+        self._bodies = Bodies(bodies) if len(bodies) > 1 else None
+        self._count = len(bodies)
         self._walker = Walker()
         self._heights = Heights(listener)
         self._line = 1
@@ -63,7 +72,7 @@ class Tally:
             self._deposit(made, states)
 
     def _deposit(self, made: Stretches, states: Sequence[State]) -> None:
-        group = np.array([self._group(state) for state in states])[made.state]
+        group = self._groups(made, states)
         self._make_room()
         width, height = self._heights.bead(made, states)
         axis_start, axis_end = made.start_mm.copy(), made.end_mm.copy()
@@ -99,8 +108,17 @@ class Tally:
             self._low[index] = np.minimum(self._low[index], low[mine].min(axis=0))
             self._high[index] = np.maximum(self._high[index], high[mine].max(axis=0))
 
-    def _group(self, state: State) -> int:
-        key = (state.feature, state.tool, state.volumetric)
+    def _groups(self, made: Stretches, states: Sequence[State]) -> Int:
+        """(n,) index of each stretch's sums."""
+        if self._bodies is None:
+            return np.array([self._group(state, 0) for state in states])[made.state]
+        body = self._bodies.owner((made.start_mm + made.end_mm) / 2)
+        pairs, of = np.unique(np.stack([made.state, body]), axis=1, return_inverse=True)
+        groups = [self._group(states[state], each) for state, each in pairs.T.tolist()]
+        return np.array(groups)[of.reshape(-1)]
+
+    def _group(self, state: State, body: int) -> int:
+        key = Key(state.feature, state.tool, state.volumetric, body)
         return self._keys.setdefault(key, len(self._keys))
 
     def _make_room(self) -> None:
@@ -122,7 +140,9 @@ class Tally:
         keys = [self._feature(key) for key in self._keys]
         volumes = np.array([filament.mm3(key) for key in keys])
         grams = np.array([filament.g_cm3(key) for key in keys]) / 1000
-        kept = [i for i, key in enumerate(keys) if key[0] not in left_out and self._sums[i, 0] > 0]
+        kept = [
+            i for i, key in enumerate(keys) if key.feature not in left_out and self._sums[i, 0] > 0
+        ]
         if not kept:
             raise InputError(
                 f"{self._name}: prints nothing that stays",
@@ -131,31 +151,36 @@ class Tally:
         in_mm3 = self._sums * volumes[:, None] if len(keys) else self._sums
         in_g = in_mm3 * grams[:, None]
         whole = in_g[kept].sum(axis=0)
-        x, y, z = whole[1:4] / whole[0]
-        beads = self._first_layer(kept, volumes)
-        bottom = float((beads[:, 4] - beads[:, 6]).min())
-        contact = contact_of(union_of(beads))
-        if contact is None:
+        beads, owner = self._first_layer(kept, volumes)
+        bed = float((beads[:, 4] - beads[:, 6]).min())
+        balance = balance_of(whole, beads, bed)
+        if balance.tilt_deg is None:
             raise InputError(f"{self._name}: its first layer is too small to stand on")
-        centre = (float(x), float(y), float(z) - bottom)
-        ahead = contact.footing.offsets_mm - contact.footing.normals @ np.array(centre[:2])
+        bodies = []
+        for body in range(self._count):
+            own = [i for i in kept if keys[i].body == body]
+            if own:
+                bodies.append(balance_of(in_g[own].sum(axis=0), beads[owner == body], bed))
         inside = self._inside * volumes
-        support = np.array([key[0] in SUPPORT for key in keys])
+        support = np.array([key.feature in SUPPORT for key in keys])
         by_feature = _by_feature(keys, in_g[:, 0])
         return Printed(
             mass_g=float(whole[0]),
             volume_mm3=float(in_mm3[kept, 0].sum()),
-            centre_of_mass_mm=centre,
+            centre_of_mass_mm=balance.centre_of_mass_mm,
             inertia_g_mm2=inertia_about_centre(whole),
-            contact_polygon_mm=contact.polygon_mm,
-            contact_area_mm2=contact.area_mm2,
-            tilt_deg=float(np.degrees(np.arctan2(ahead.min(), centre[2]))),
+            contact_polygon_mm=balance.contact_polygon_mm,
+            contact_area_mm2=balance.contact_area_mm2,
+            tilt_deg=balance.tilt_deg,
+            bodies=tuple(bodies),
             feature_mass_g=by_feature,
             feature_volume_mm3=_by_feature(keys, in_mm3[:, 0]),
             left_out=tuple(feature for feature in by_feature if feature in left_out),
             bounds_mm=np.stack([self._low[kept].min(axis=0), self._high[kept].max(axis=0)]),
             objects=tuple(sorted(self._listener.objects)),
-            filament_mm3=float(sum(in_mm3[i, 0] for i, key in enumerate(keys) if key[0] != CUSTOM)),
+            filament_mm3=float(
+                sum(in_mm3[i, 0] for i, key in enumerate(keys) if key.feature != CUSTOM)
+            ),
             in_cavities_mm3=float(inside.sum()),
             support_in_cavities_mm3=float(inside[support].sum()),
             in_cavities_at_mm=next(iter(self._at.values()), None),
@@ -165,13 +190,15 @@ class Tally:
 
     def _feature(self, key: Key) -> Key:
         """Before the first label of a file that has labels comes the printer's start G-code."""
-        if key[0] == UNLABELLED and self._listener.labelled:
-            return (CUSTOM, *key[1:])
+        if key.feature == UNLABELLED and self._listener.labelled:
+            return key._replace(feature=CUSTOM)
         return key
 
-    def _first_layer(self, kept: Sequence[int], volumes: Float) -> Float:
+    def _first_layer(self, kept: Sequence[int], volumes: Float) -> tuple[Float, Int]:
+        """(n, 7) beads and (n,) the bodies they belong to."""
         lowest = min(self._lowest[i].z_mm for i in kept)
-        layers = []
+        bodies = [key.body for key in self._keys]
+        layers, owners = [], []
         for i in kept:
             if self._lowest[i].z_mm <= lowest + SAME_LAYER_MM:
                 beads = self._lowest[i].beads.copy()
@@ -179,11 +206,12 @@ class Tally:
                 # As Cura and others count: a bead without a width is a box
                 beads[unsaid, 5] *= -volumes[i] / beads[unsaid, 6]
                 layers.append(beads)
-        return np.concatenate(layers)
+                owners.append(np.full(len(beads), bodies[i]))
+        return np.concatenate(layers), np.concatenate(owners)
 
 
 def _by_feature(keys: Sequence[Key], values: Float) -> dict[str, float]:
     sums: dict[str, float] = {}
     for key, value in zip(keys, values, strict=True):
-        sums[key[0]] = sums.get(key[0], 0.0) + float(value)
+        sums[key.feature] = sums.get(key.feature, 0.0) + float(value)
     return {feature: sums[feature] for feature in sorted(sums) if sums[feature] > 0}

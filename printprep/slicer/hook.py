@@ -87,14 +87,16 @@ def measured(gcode: Path, part: CarriedPart | None = None) -> Printed:
     """A G-code's figures; what it does not say of the filament, the slicer's environment may."""
     from printprep.gcode.measure import measure_gcode
 
-    cavities = () if part is None else part.cavities
-    printed = measure_gcode(gcode, cavities=cavities)
+    cavities, bodies = ((), ()) if part is None else (part.cavities, part.bodies)
+    printed = measure_gcode(gcode, cavities=cavities, bodies=bodies)
     said = printed.said.settings
     diameter = None if "filament_diameter" in said else _setting("FILAMENT_DIAMETER")
     density = None if "filament_density" in said else _setting("FILAMENT_DENSITY")
     if diameter is None and density is None:
         return printed
-    return measure_gcode(gcode, cavities=cavities, diameter_mm=diameter, density_g_cm3=density)
+    return measure_gcode(
+        gcode, cavities=cavities, bodies=bodies, diameter_mm=diameter, density_g_cm3=density
+    )
 
 
 def tips(printed: Printed, lean: Lean) -> Iterator[Finding]:
@@ -153,8 +155,10 @@ def moved_to(part: CarriedPart, printed: Printed) -> CarriedPart:
         centre_mm=part.centre_mm + shift,
         middle_mm=part.middle_mm + shift,
         contact_polygon_mm=contact + shift[:2],
+        sure_polygon_mm=part.sure_polygon_mm + shift[:2],
         placement=matrix @ part.placement,
         cavities=tuple(cavity.translate((x, y, z)) for cavity in part.cavities),
+        bodies=tuple(body.translate((x, y, z)) for body in part.bodies),
     )
 
 

@@ -127,7 +127,7 @@ def slice_and_measure(
 
     gcode = folder / "part.gcode"
     sliced = program.slice(part.file, gcode, settings, load)
-    return measure_gcode(gcode, cavities=part.cavities), sliced.warnings
+    return measure_gcode(gcode, cavities=part.cavities, bodies=part.bodies), sliced.warnings
 
 
 def _says_density(config: Path) -> bool:

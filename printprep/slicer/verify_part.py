@@ -28,10 +28,12 @@ class CarriedPart:
     """What was computed of a part, in the coordinates of the bed.
 
     mass_g, centre_mm, tilt_deg (None without contact; toward the lean's azimuth, if it has one),
-    lean, contact_polygon_mm ((k, 2), empty without contact), contact_area_mm2, bodies, profile :
-    as carried.
+    lean, contact_polygon_mm ((k, 2), empty without contact), contact_area_mm2, profile : as
+    carried.
+    sure_polygon_mm : (k, 2) hull of the contact where it is at least a line wide: what is narrower
+    a slicer may leave out; empty where all of it is.
     size_mm, middle_mm : (3,) of the bounding box;  placement : (4, 4) model's file → bed;
-    cavities : sealed voids of the mesh.
+    cavities : sealed voids of the mesh;  bodies : what of the mesh does not touch each other.
     """
 
     file: Path
@@ -41,7 +43,8 @@ class CarriedPart:
     lean: Lean
     contact_polygon_mm: Float
     contact_area_mm2: float
-    bodies: int
+    sure_polygon_mm: Float
+    bodies: tuple[Manifold, ...]
     size_mm: Float
     middle_mm: Float
     placement: Float
@@ -51,7 +54,7 @@ class CarriedPart:
 
 def carried_part(path: str | Path) -> CarriedPart:
     """Read PART.3mf.  Raises InputError where it is not ours, older than this, or broken."""
-    from printprep.mesh.measure import shells, try_manifold
+    from printprep.mesh.measure import bodies, shells, try_manifold
     from printprep.mesh.weld import weld
     from printprep.threemf.read import read_3mf
 
@@ -71,6 +74,7 @@ def carried_part(path: str | Path) -> CarriedPart:
         contact = said["contact"] or {"polygon_mm": np.zeros((0, 3)), "area_mm2": 0.0}
         moved = np.eye(4)
         moved[:3, 3] = shift
+        profile = _profile(said)
         return CarriedPart(
             file=path,
             mass_g=float(said["mass_g"]),
@@ -79,12 +83,13 @@ def carried_part(path: str | Path) -> CarriedPart:
             lean=Lean(float(said["lean_deg"]), said["lean_azimuth_deg"]),
             contact_polygon_mm=np.array(contact["polygon_mm"], dtype=float)[:, :2] + shift[:2],
             contact_area_mm2=float(contact["area_mm2"]),
-            bodies=int(said["bodies"]),
+            sure_polygon_mm=_sure(manifold, profile),
+            bodies=bodies(manifold),
             size_mm=high - low,
             middle_mm=(low + high) / 2 + shift,
             placement=moved @ np.array(said["placement"], dtype=float),
             cavities=shells(manifold)[1],
-            profile=_profile(said),
+            profile=profile,
         )
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(
@@ -104,6 +109,19 @@ def _figures(path: Path, attachments: Any) -> dict[str, Any]:
     if not isinstance(said, dict):
         raise InputError(f"{path.name}: {ATTACHMENT} holds no figures", _HOLLOW_IT)
     return said
+
+
+def _sure(manifold: Manifold, profile: Profile) -> Float:
+    """The hull of the first layer's section, opened by a line's width."""
+    from manifold3d import JoinType
+
+    from printprep.stand.contact import contact_of, section_at_bed
+
+    bed_mm = manifold.bounding_box()[2]
+    section = section_at_bed(manifold.translate((0, 0, -bed_mm)), profile.printer.first_layer_mm)
+    half = (profile.printer.line_width_mm or 0.0) / 2
+    opened = contact_of(section.offset(-half, JoinType.Round).offset(half, JoinType.Round))
+    return np.zeros((0, 2)) if opened is None else opened.polygon_mm
 
 
 def _profile(said: dict[str, Any]) -> Profile:

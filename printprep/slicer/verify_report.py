@@ -35,7 +35,7 @@ def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
             "centre_of_mass_mm": [number(value) for value in carried.centre_mm],
             "tilt_deg": number(carried.tilt_deg),
             "contact_area_mm2": number(carried.contact_area_mm2),
-            "bodies": carried.bodies,
+            "bodies": len(carried.bodies),
         },
         "printed": printed_json(printed)
         | {"tilt_deg": number(tilt_as_printed(printed, carried.lean))},
@@ -101,10 +101,9 @@ def show_verified(console: Console, found: Verified, *, with_findings: bool = Tr
     facts.add_row("centre of mass", f"{centre_offset_mm(carried, printed):.2f} mm apart")
     tilt = tilt_as_printed(printed, carried.lean)
     computed = "no contact" if carried.tilt_deg is None else f"{carried.tilt_deg:.1f}°"
-    if carried.bodies == 1:
-        facts.add_row(
-            "tips at", f"{tilt:.1f}° printed, {computed} computed (asked to stand {carried.lean})"
-        )
+    facts.add_row(
+        "tips at", f"{tilt:.1f}° printed, {computed} computed (asked to stand {carried.lean})"
+    )
     facts.add_row(
         "contact",
         f"{printed.contact_area_mm2:.0f} mm² printed, {carried.contact_area_mm2:.0f} mm² computed",

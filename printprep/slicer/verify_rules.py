@@ -16,7 +16,7 @@ from printprep.types import Finding, Stability
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from printprep.gcode.printed import Printed
+    from printprep.gcode.printed import Balance, Printed
     from printprep.slicer.verify_part import CarriedPart
     from printprep.types import Lean
 
@@ -25,16 +25,19 @@ if TYPE_CHECKING:
 MASS_SHARE = 0.04
 CENTRE_MM, CENTRE_SHARE = 0.5, 0.01  # of the height, if that is more
 LEAN_DEG = 1.0
-CONTACT_MM = 0.5  # a line: what is thinner than one does not print
+CONTACT_MM = 0.5  # a line
 FILAMENT_SHARE = 0.005
 
 _SETTINGS = "Slice it with the profile's settings: `printprep profiles export`."
 
 
-def standing(printed: Printed) -> Stability:
-    """A print as a ``Stability``, so that it is judged by the same rules as a part."""
+def standing(printed: Printed | Balance) -> Stability:
+    """A print or a body of it as a ``Stability``: judged by the same rules as a part."""
     from printprep.stand.contact import Contact
 
+    if printed.tilt_deg is None:
+        nowhere = np.zeros((0, 2))
+        return Stability(nowhere, 0.0, printed.centre_of_mass_mm, None, None, None)
     contact = Contact(printed.contact_polygon_mm, printed.contact_area_mm2)
     footing = contact.footing
     ahead = footing.offsets_mm - footing.normals @ np.array(printed.centre_of_mass_mm[:2])
@@ -51,12 +54,14 @@ def standing(printed: Printed) -> Stability:
 
 
 def tilt_as_printed(printed: Printed, lean: Lean) -> float:
-    """The print's tilt angle, toward the lean's azimuth if it has one."""
+    """The tilt angle of the weakest body, toward the lean's azimuth if it has one.
+
+    A body that does not touch the bed falls: −90.
+    """
     from printprep.stand.lean import tilt_toward
 
-    tilt = tilt_toward(standing(printed), lean)
-    assert tilt is not None  # a print without contact is refused when it is measured
-    return tilt
+    tilts = [tilt_toward(standing(body), lean) for body in printed.bodies or (printed,)]
+    return min(-90.0 if tilt is None else tilt for tilt in tilts)
 
 
 def compare(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
@@ -91,16 +96,24 @@ def centre_offset_mm(part: CarriedPart, printed: Printed) -> float:
 
 
 def contact_offset_mm(part: CarriedPart, printed: Printed) -> float | None:
-    """Greatest distance between the support polygons: Hausdorff's, of convex sets."""
+    """How far the printed support polygon reaches beyond the computed one, or falls short of it.
+
+    Hausdorff's distance of convex sets, but that what is narrower than a line need not be there.
+    """
     if not len(part.contact_polygon_mm):
         return None
+    printed_reach = _reach(printed.contact_polygon_mm)
+    beyond = printed_reach - _reach(part.contact_polygon_mm)
+    sure = part.sure_polygon_mm
+    short = _reach(sure) - printed_reach if len(sure) else np.zeros(1)
+    return float(max(beyond.max(), short.max(), 0.0))
+
+
+def _reach(polygon_mm: Float) -> Float:
+    """(360,) how far a convex polygon reaches toward every degree."""
     angles = np.radians(np.arange(0.0, 360.0, 1.0))
-    toward = np.stack([np.cos(angles), np.sin(angles)])
-    reach = [
-        (polygon @ toward).max(axis=0)
-        for polygon in (part.contact_polygon_mm, printed.contact_polygon_mm)
-    ]
-    return float(np.abs(reach[1] - reach[0]).max())
+    reach: Float = (polygon_mm @ np.stack([np.cos(angles), np.sin(angles)])).max(axis=0)
+    return reach
 
 
 def _mass(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
@@ -155,29 +168,25 @@ def _contact(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
 
 
 def _tilt(part: CarriedPart, printed: Printed) -> Iterator[Finding]:
-    if part.bodies > 1:
-        yield Finding(
-            "printed-tilt",
-            "info",
-            f"The part is {part.bodies} bodies that do not touch; "
-            "how each stands is not measured in the G-code.",
-        )
-        return
     tilt = tilt_as_printed(printed, part.lean)
     asked = part.lean.angle_deg
     # Where the lean is out of reach, the part promises only the tilt it has
-    promised = asked if part.tilt_deg is None else min(asked, part.tilt_deg)
+    promised = -90.0 if part.tilt_deg is None else min(asked, part.tilt_deg)
     if tilt < promised - LEAN_DEG or tilt < 0 <= promised:
         falls = "falls by itself" if tilt < 0 else f"tips at {tilt:.1f}°"
         yield Finding(
             "printed-tilt",
             "error",
-            f"As printed it {falls}; it was to stand {part.lean}.",
+            f"As printed {_it(part)} {falls}; it was to stand {part.lean}.",
             f"{_SETTINGS} A larger lean margin helps too: --set stability.lean_margin_deg=2.",
             tilt,
             promised,
             "°",
         )
+
+
+def _it(part: CarriedPart) -> str:
+    return "it" if len(part.bodies) == 1 else f"the weakest of its {len(part.bodies)} bodies"
 
 
 def _cavities(printed: Printed) -> Iterator[Finding]:

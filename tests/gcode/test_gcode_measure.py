@@ -228,6 +228,42 @@ def test_material_and_support_inside_cavities(measured):
     assert measured(wall + FILAMENT, cavities=[elsewhere]).in_cavities_mm3 == 0.0
 
 
+def test_bodies_are_balanced_each_by_itself(measured):
+    """Two cuboids of one print: a tall one on 20 × 20 mm, and a flat one beside it."""
+    at_x, at_y = (100.0, 100.0), (100.0, 130.0)
+    text = beads(at=at_x, layers=100) + beads(at=at_y, layers=5)
+    # The second one's box reaches round the first: what lies in both boxes goes by the surface
+    frame = Manifold.cube((60, 60, 1)).translate((80, 90, 0)) - Manifold.cube(
+        (22, 22, 1)
+    ).translate((99, 99, 0))
+    tall = Manifold.cube((20, 20, 20)).translate((100, 100, 0))
+    for flat in (Manifold.cube((20, 20, 1)).translate((100, 130, 0)), frame):
+        printed = measured(text + FILAMENT, bodies=[tall, flat])
+        first, second = printed.bodies
+        assert first.mass_g == pytest.approx(LENGTH * DEPTH * 20 * 1.25e-3, rel=1e-6)
+        assert second.mass_g == pytest.approx(LENGTH * DEPTH * 1 * 1.25e-3, rel=1e-6)
+        assert first.centre_of_mass_mm == pytest.approx((110, 110, 10), abs=1e-6)
+        assert second.centre_of_mass_mm == pytest.approx((110, 140, 0.5), abs=1e-6)
+        assert first.tilt_deg == pytest.approx(45.0, abs=0.05)
+        assert second.tilt_deg == pytest.approx(math.degrees(math.atan(10 / 0.5)), abs=0.05)
+        assert first.contact_area_mm2 + second.contact_area_mm2 == pytest.approx(
+            printed.contact_area_mm2, rel=1e-6
+        )
+    assert measured(text + FILAMENT).bodies == ()
+
+
+def test_a_body_above_the_bed_does_not_touch_it(measured):
+    lifted = "".join(
+        f"G1 Z{float(line[4:].split()[0]) + 5:.3f}\n" if line.startswith("G1 Z") else line + "\n"
+        for line in beads(at=(100.0, 130.0), layers=5).splitlines()
+    )
+    solids = [Manifold.cube((20, 20, z)).translate((100, y, 0)) for y, z in ((100, 1), (130, 6))]
+    on_bed, above = measured(beads(layers=5) + lifted + FILAMENT, bodies=solids).bodies
+    assert on_bed.tilt_deg > 80
+    assert above.tilt_deg is None and len(above.contact_polygon_mm) == 0
+    assert above.centre_of_mass_mm[2] == pytest.approx(5.5)
+
+
 def test_what_the_file_does_not_say_is_told(measured):
     printed = measured(beads())
     assert len(printed.assumed) == 2

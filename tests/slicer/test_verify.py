@@ -9,15 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
+from manifold3d import Manifold
 from verify_parts import SIDE, hollow_block, write_block, write_model
 
+from printprep import hollow
 from printprep.cli.run import run
 from printprep.errors import InputError, ToolError, UsageError
-from printprep.gcode.printed import Printed, Said
+from printprep.gcode.printed import Balance, Printed, Said
+from printprep.mesh.measure import arrays
 from printprep.slicer.export import profile_ini
 from printprep.slicer.verify import Verified, verify
 from printprep.slicer.verify_part import CarriedPart, carried_part
-from printprep.slicer.verify_rules import compare, support_inside
+from printprep.slicer.verify_rules import compare, contact_offset_mm, support_inside
 from printprep.threemf.read import ATTACHMENT
 from printprep.types import Lean
 
@@ -128,6 +132,7 @@ def as_printed(part: CarriedPart, **changes: object) -> Printed:
         contact_polygon_mm=part.contact_polygon_mm,
         contact_area_mm2=part.contact_area_mm2,
         tilt_deg=float(part.tilt_deg or 0.0),
+        bodies=(),
         feature_mass_g={},
         feature_volume_mm3={},
         left_out=(),
@@ -192,10 +197,44 @@ def test_a_lean_out_of_reach_or_toward_one_side(block: Path):
     assert [item.rule for item in compare(straight, as_printed(straight))] == ["printed-tilt"]
 
 
-def test_bodies_that_do_not_touch_are_not_judged_as_one(block: Path):
-    part = replace(carried_part(block), bodies=2)
-    found = list(compare(part, as_printed(part, tilt_deg=-5.0)))
-    assert [(item.rule, item.severity) for item in found] == [("printed-tilt", "info")]
+def test_the_weakest_body_counts(block: Path):
+    part = carried_part(block)
+    part = replace(part, bodies=part.bodies * 2)
+    good = Balance(1.0, (125.0, 105.0, 12.0), part.contact_polygon_mm, 576.0, 45.0)
+    weak = replace(good, tilt_deg=8.0)
+    nowhere = Balance(1.0, (125.0, 105.0, 12.0), np.zeros((0, 2)), 0.0, None)
+    for bodies, rules in (
+        ((good, good), []),
+        ((good, weak), ["printed-tilt"]),
+        ((nowhere, good), ["printed-tilt"]),
+    ):
+        found = list(compare(part, as_printed(part, bodies=bodies, tilt_deg=30.0)))
+        assert [item.rule for item in found] == rules
+        assert all("weakest of its 2 bodies" in item.message for item in found)
+    floating = replace(part, tilt_deg=None)  # told when it was hollowed; no news of the print
+    assert list(compare(floating, as_printed(part, bodies=(nowhere, good)))) == []
+
+
+def test_a_contact_narrower_than_a_line_need_not_print(tmp_path: Path):
+    """A spike 0.3 mm thin on one side of the foot: with it or without, the print is as computed."""
+    foot, spike = Manifold.cube((20, 20, 5)), Manifold.cube((4, 0.3, 5)).translate((20, 8, 0))
+    vertices, faces = arrays(foot + spike)
+    result = hollow(trimesh.Trimesh(vertices, faces), resolution=16, base="never")
+    result.write(tmp_path / "spiked.3mf")
+    part = carried_part(tmp_path / "spiked.3mf")
+    wide, sure = np.ptp(part.contact_polygon_mm, axis=0), np.ptp(part.sure_polygon_mm, axis=0)
+    assert wide[0] == pytest.approx(24, abs=1e-3) and sure[0] == pytest.approx(20, abs=0.1)
+    without = part.contact_polygon_mm[part.contact_polygon_mm[:, 0] < part.middle_mm[0] + 8.5]
+    assert len(without) == 4
+    shift = np.array([0.7, 0.0])
+    for polygon, least, most in (
+        (part.contact_polygon_mm, 0.0, 0.0),
+        (without, 0.0, 0.1),
+        (without - shift, 0.69, 0.8),
+        (part.contact_polygon_mm + shift, 0.69, 0.71),
+    ):
+        offset = contact_offset_mm(part, as_printed(part, contact_polygon_mm=polygon))
+        assert least <= offset <= most
 
 
 def rewritten(source: Path, target: Path, figures: bytes | None) -> Path:

@@ -1,0 +1,32 @@
+"""How what was printed stands, from its moments and the beads of its lowest layer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.gcode.first_layer import union_of
+from printprep.gcode.printed import Balance
+from printprep.stand.contact import contact_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Float = NDArray[np.float64]
+
+
+def balance_of(moments: Float, beads: Float, bed_mm: float) -> Balance:
+    """A print's balance.
+
+    moments : (10,) as :mod:`printprep.gcode.moments` has them, in grams;  beads : (n, 7) that touch
+    the bed, n = 0 for none;  bed_mm : the bed's height in the machine.
+    """
+    x, y, z = (float(value) for value in moments[1:4] / moments[0])
+    centre = (x, y, z - bed_mm)
+    contact = contact_of(union_of(beads)) if len(beads) else None
+    if contact is None:
+        return Balance(float(moments[0]), centre, np.zeros((0, 2)), 0.0, None)
+    ahead = contact.footing.offsets_mm - contact.footing.normals @ np.array(centre[:2])
+    tilt = float(np.degrees(np.arctan2(ahead.min(), centre[2])))
+    return Balance(float(moments[0]), centre, contact.polygon_mm, contact.area_mm2, tilt)
