@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     Bool = NDArray[np.bool_]
 
 Severity = Literal["info", "warning", "error"]
+SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a file is written for
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
@@ -326,8 +327,8 @@ class HollowResult:
         """The angle of the lean asked for."""
         return self.lean.angle_deg
 
-    def write(self, path: Any) -> None:
-        """Write the part; the suffix chooses the format (.3mf carries the settings)."""
+    def write(self, path: Any, slicer: SlicerName = "prusa") -> None:
+        """Write the part; the suffix chooses the format (.3mf carries PrusaSlicer's settings)."""
         from printprep.report.export import write_part
 
-        write_part(self, path)
+        write_part(self, path, slicer)

@@ -52,9 +52,19 @@ def samples_dir() -> Path:
 @pytest.fixture(scope="session")
 def prusa_slicer() -> Path:
     """The real slicer: skipped without it on a user's machine, a failure in CI."""
-    found = shutil.which("prusa-slicer")
+    return _tool("prusa-slicer")
+
+
+@pytest.fixture(scope="session")
+def cura_engine() -> Path:
+    """Cura's engine, likewise."""
+    return _tool("CuraEngine")
+
+
+def _tool(name: str) -> Path:
+    found = shutil.which(name)
     if found is None:
-        message = "prusa-slicer is not installed"
+        message = f"{name} is not installed"
         if _required():
             pytest.fail(message)
         pytest.skip(message)

@@ -16,11 +16,12 @@ from printprep.cli.options import (
     profile_options,
 )
 from printprep.errors import UsageError
+from printprep.report.by_hand import SLICERS
 
 if TYPE_CHECKING:
     from printprep.progress import Progress
     from printprep.slicer.verify import Verified
-    from printprep.types import HollowResult
+    from printprep.types import HollowResult, SlicerName
 
 _EPILOG = """\b
 Examples:
@@ -40,6 +41,15 @@ Examples:
     metavar="FILE",
     help="Where to write: .3mf (carries the print settings), .stl, .obj or .ply; an existing file "
     "is replaced. Default: MODEL-hollow.3mf in the current folder.",
+)
+@click.option(
+    "--for",
+    "slicer",
+    type=click.Choice(SLICERS),
+    default="prusa",
+    show_default=True,
+    help="The slicer to write for. Only PrusaSlicer (and SuperSlicer) takes its settings from the "
+    "file; for others it holds the shape alone, and what must be set by hand is said.",
 )
 @profile_options
 @placement_options
@@ -103,6 +113,7 @@ Examples:
 def command(
     model: Path,
     output: Path | None,
+    slicer: SlicerName,
     profile: str,
     settings: tuple[str, ...],
     wall_mm: float | None,
@@ -121,7 +132,9 @@ def command(
     With --fail-on, nothing is written when a finding is as severe.
     """
     from printprep.pipeline import hollow
+    from printprep.profiles import load_profile
     from printprep.progress import for_terminal
+    from printprep.report.by_hand import check_slicer
     from printprep.report.export import check_output, format_findings, write_part
 
     target = Path(f"{model.stem}-hollow.3mf") if output is None else output
@@ -129,6 +142,7 @@ def command(
     _refuse_to_replace(model, target)
     progress = for_terminal(quiet=quiet)
     changed = overrides(settings, wall_mm)
+    check_slicer(load_profile(profile, changed), slicer)
     if verify_it:
         from printprep.slicer.verify_result import check_verifiable
 
@@ -140,7 +154,7 @@ def command(
         progress=progress,
         **options,
     )
-    result = _with_findings(result, format_findings(result.profile, target))
+    result = _with_findings(result, format_findings(result.profile, target, slicer))
     if simulate:
         with progress.stage("simulate"):
             result = _with_simulation(result)
@@ -150,7 +164,7 @@ def command(
     stopped = _stopped(found, fail_on)
     if not stopped:
         with progress.stage("write"):
-            write_part(result, target)
+            write_part(result, target, slicer)
     written = None if stopped else target
     _say(found, model, written, verified, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if stopped else 0

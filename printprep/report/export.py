@@ -17,15 +17,17 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.profiles import Profile
-    from printprep.types import HollowResult
+    from printprep.types import HollowResult, SlicerName
 
 SUFFIXES = (".3mf", ".stl", ".obj", ".ply")
 JSON_PART = "Metadata/printprep.json"
 THUMBNAIL_SIZE = 256
 
 
-def write_part(result: HollowResult, path: str | Path) -> None:
+def write_part(result: HollowResult, path: str | Path, slicer: SlicerName = "prusa") -> None:
     """Write a part whole or not at all; the suffix chooses the format.
+
+    slicer : whose settings go into a 3MF; all but PrusaSlicer take only the shape from it.
 
     Raises
     ------
@@ -36,7 +38,7 @@ def write_part(result: HollowResult, path: str | Path) -> None:
 
     target = Path(path)
     check_output(target)
-    write_atomically(target, part_bytes(result, target.suffix))
+    write_atomically(target, part_bytes(result, target.suffix, slicer))
 
 
 def check_output(path: Path) -> None:
@@ -64,19 +66,23 @@ def check_output(path: Path) -> None:
         )
 
 
-def part_bytes(result: HollowResult, suffix: str) -> bytes:
+def part_bytes(result: HollowResult, suffix: str, slicer: SlicerName = "prusa") -> bytes:
     """The file's content; the same result and version give the same bytes."""
     from printprep.mesh.write import to_bytes
     from printprep.mesh.written import as_written
 
     manifold = as_written(result.part.manifold)
     if suffix.lower() == ".3mf":
-        return _as_3mf(result, manifold)
+        return _as_3mf(result, manifold, plain=slicer != "prusa")
     return to_bytes(manifold, suffix)
 
 
-def format_findings(profile: Profile, path: Path) -> tuple[Finding, ...]:
-    """What the format at ``path`` leaves behind of the profile's settings."""
+def format_findings(
+    profile: Profile, path: Path, slicer: SlicerName = "prusa"
+) -> tuple[Finding, ...]:
+    """What the file at ``path`` leaves behind of the profile's settings."""
+    if slicer != "prusa":
+        return (_set_by_hand(profile, slicer),)
     suffix = path.suffix.lower()
     if suffix == ".3mf" or not profile.slicer.object_settings:
         return ()
@@ -94,7 +100,20 @@ def format_findings(profile: Profile, path: Path) -> tuple[Finding, ...]:
     )
 
 
-def _as_3mf(result: HollowResult, manifold: Manifold) -> bytes:
+def _set_by_hand(profile: Profile, slicer: SlicerName) -> Finding:
+    from printprep.report.by_hand import by_hand
+
+    program, settings = by_hand(profile, slicer)
+    return Finding(
+        "set-by-hand",
+        "info",
+        f"{program} takes only the shape from this file; mass and stand hold with these settings: "
+        f"{'; '.join(settings)}.",
+        "Set them before you slice.",
+    )
+
+
+def _as_3mf(result: HollowResult, manifold: Manifold, *, plain: bool) -> bytes:
     from printprep import __version__
     from printprep.mesh.written import written_arrays
     from printprep.report.json import embedded_json, to_text
@@ -115,4 +134,5 @@ def _as_3mf(result: HollowResult, manifold: Manifold) -> bytes:
         thumbnail_png=thumbnail_png(vertices, faces, THUMBNAIL_SIZE),
         attachments={JSON_PART: to_text(embedded_json(result)).encode("ascii")},
         metadata={"Title": name, "Application": f"printprep {__version__}"},
+        plain=plain,
     )

@@ -81,11 +81,13 @@ def write_3mf(
     thumbnail_png: bytes | None = None,
     attachments: Mapping[str, bytes] | None = None,
     metadata: Mapping[str, str] | None = None,
+    plain: bool = False,
 ) -> bytes:
     """The 3MF file as bytes; the same arguments give the same bytes.
 
     attachments : part name ("Metadata/printprep.json") → content, JSON or text;
-    metadata : name of the core specification ("Title", "Application", …) → text.
+    metadata : name of the core specification ("Title", "Application", …) → text;
+    plain : leave PrusaSlicer's config out, and with it every setting.
 
     Raises UsageError for a setting no slicer file may carry, ValueError for geometry or a part that
     would make an invalid file.
@@ -94,10 +96,9 @@ def write_3mf(
         raise ValueError("a 3MF needs at least one item")
     for item in items:
         _check(item)
-    parts = {
-        MODEL_PART: _model(items, metadata or {}),
-        CONFIG_PART: _config(items),
-    }
+    parts = {MODEL_PART: _model(items, metadata or {})}
+    if not plain:
+        parts[CONFIG_PART] = _config(items)
     if thumbnail_png is not None:
         parts[THUMBNAIL_PART] = thumbnail_png
     for name, content in sorted((attachments or {}).items()):

@@ -15,10 +15,12 @@ import numpy as np
 import pytest
 import trimesh
 from closed_form_parts import hollow_result
+from judges import read_strictly
 
 from printprep.errors import OutputError, UsageError
 from printprep.mesh.written import written_arrays
 from printprep.profiles import load_profile
+from printprep.report.by_hand import check_slicer
 from printprep.report.export import check_output, format_findings, part_bytes, write_part
 
 SUFFIXES = (".3mf", ".stl", ".obj", ".ply")
@@ -128,6 +130,45 @@ class TestOutput:
         path.write_text("old")
         write_part(hollow_result(), str(path))
         assert path.read_bytes() == part_bytes(hollow_result(), ".stl")
+
+
+@pytest.mark.parametrize("slicer", ["orca", "cura", "generic"])
+def test_for_another_slicer_the_shape_is_alone_and_the_rest_is_said(slicer: str, tmp_path: Path):
+    result = hollow_result()
+    prusa = zipfile.ZipFile(io.BytesIO(part_bytes(result, ".3mf")))
+    plain = zipfile.ZipFile(io.BytesIO(part_bytes(result, ".3mf", slicer)))
+    config = "Metadata/Slic3r_PE_model.config"
+    assert set(prusa.namelist()) - set(plain.namelist()) == {config}
+    for name in set(plain.namelist()) - {"[Content_Types].xml"}:
+        assert plain.read(name) == prusa.read(name)
+    result.write(tmp_path / "part.3mf", slicer)
+    mesh, warnings = read_strictly(tmp_path / "part.3mf")
+    assert not warnings and len(mesh.vertices) == 16
+    assert part_bytes(result, ".stl", slicer) == part_bytes(result, ".stl")
+    for name in ("part.3mf", "part.stl"):
+        (finding,) = format_findings(result.profile, Path(name), slicer)
+        assert (finding.rule, finding.severity) == ("set-by-hand", "info")
+        for value in ("0.2 mm", "0.45 mm", "100 %"):
+            assert value in finding.message
+        assert "=" not in finding.message  # all in that slicer's own words
+
+
+def test_a_setting_without_a_name_of_the_slicers_own_is_said_in_prusaslicers():
+    profile = load_profile(
+        "fdm-pla-0.4",
+        {
+            "printer.layer_height_mm": 0.3,
+            "slicer.object_settings.fill_density": "40%",
+            "slicer.object_settings.support_material_buildplate_only": "0",
+        },
+    )
+    (finding,) = format_findings(profile, Path("part.3mf"), "orca")
+    assert "fill_density=40% (in PrusaSlicer's words)" in finding.message
+    assert "Layer height 0.3 mm" in finding.message
+    assert "On build plate only" not in finding.message
+    with pytest.raises(UsageError, match="is for resin"):
+        check_slicer(load_profile("resin-standard"), "orca")
+    check_slicer(load_profile("resin-standard"), "prusa")
 
 
 def test_bare_formats_warn_of_the_settings_they_lose():
