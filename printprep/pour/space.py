@@ -19,6 +19,7 @@ import numpy as np
 
 from printprep.mesh.columns import cross
 from printprep.mesh.measure import arrays
+from printprep.mesh.tree import SurfaceTree
 from printprep.types import Grid
 from printprep.voxel.grid import points_mm
 
@@ -55,6 +56,10 @@ class Space:
     faces: Int
 
     @cached_property
+    def _tree(self) -> SurfaceTree:
+        return SurfaceTree(self.vertices, self.faces)
+
+    @cached_property
     def clearance_mm(self) -> Float32:
         """Distance of empty cells to material, to about half a cell; 0 in full ones."""
         from scipy.ndimage import distance_transform_edt
@@ -82,22 +87,11 @@ class Space:
 
     def roomiest_mm(self, index: Int, enough_mm: float = np.inf) -> Float:
         """(n,) the largest clearance within each of these cells, or one that is enough."""
-        import igl
-
         if len(index) == 0:
             return np.zeros(0)
-        tree = igl.AABB()
-        tree.init(self.vertices, self.faces)
-
-        def clearance(points: Float) -> Float:
-            squared, _, _ = tree.squared_distance(
-                self.vertices, self.faces, np.ascontiguousarray(points)
-            )
-            return np.sqrt(np.maximum(np.ravel(squared), 0.0))
-
         pitch = self.grid.pitch_mm
         centres = points_mm(self.grid, index)
-        points, best = centres.copy(), clearance(centres)
+        points, best = centres.copy(), self._tree.nearest(centres)[0]
         star = np.vstack([np.eye(3), -np.eye(3)])
         for share in _STEPS:
             # What steps this small and smaller can still gain decides who goes on.
@@ -111,7 +105,7 @@ class Space:
                 around = points[going, None] + share * pitch * star
                 limit = pitch / 2
                 around = np.clip(around, centres[going, None] - limit, centres[going, None] + limit)
-                found = clearance(around.reshape(-1, 3)).reshape(len(going), len(star))
+                found = self._tree.nearest(around.reshape(-1, 3))[0].reshape(len(going), len(star))
                 top = found.argmax(axis=1)
                 highest = found[np.arange(len(going)), top]
                 better = highest > best[going]
