@@ -132,8 +132,11 @@ def explore(
                 solid.manifold.volume() * grams,
                 stability(solid.manifold, first_layer).tilt_deg,
             ),
-            mark("shell alone", carve(solid, None, room, program, empty)),
-            mark("paper's objective", carve(solid, footed.base, room, program, planes)),
+            mark("shell alone", carve(solid, None, room, settings, program.bodies, empty)),
+            mark(
+                "paper's objective",
+                carve(solid, footed.base, room, settings, program.bodies, planes),
+            ),
         )
     return Exploration(solid.name, settings, points, reachable, marks)
 

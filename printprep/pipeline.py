@@ -41,6 +41,8 @@ def hollow(
     device: str = "cpu",
     base: BasePolicy = "auto",
     self_support: bool = False,
+    drains: int | None = None,
+    drain_diameter_mm: float | None = None,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the lean asked for.
@@ -60,6 +62,8 @@ def hollow(
         ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet.
     self_support : carry the cavities' ceilings from inside, where the process needs it (fdm).
+    drains : holes in each cavity, at least, 0 for none;  drain_diameter_mm : how wide; None takes
+        the profile's.
 
     Raises
     ------
@@ -68,6 +72,7 @@ def hollow(
     from printprep.cavity.surface import cavity_surface
     from printprep.check import Subject, run_rules
     from printprep.density.program import Program
+    from printprep.drains.part import Drainer
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper
@@ -77,7 +82,7 @@ def hollow(
     from printprep.voxel.depth import measure_depths
     from printprep.voxel.domain import weigh_interior
 
-    settings = load_profile(profile, overrides or {})
+    settings = load_profile(profile, {**(overrides or {}), **drain_keys(drains, drain_diameter_mm)})
     asked = lean_of(lean, settings.stability.lean_deg)
     _check_resolution(resolution)
     _check_solver(objective, solver, device)
@@ -106,12 +111,13 @@ def hollow(
     with clock.stage("base"):
         program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
         choice = program.choose(base, asked)
+    drainer = Drainer(settings) if settings.drain.count else None
     with clock.stage("solve"):
         if objective == "paper":
-            found = settle_paper(solid, room, program, choice, solver, device)
+            found = settle_paper(solid, room, program, choice, solver, device, drainer)
         else:
-            found = settle_lean(solid, room, program, choice, asked)
-        density, part, standing = found
+            found = settle_lean(solid, room, program, choice, asked, drainer)
+        density, part, standing = found.density, found.part, found.stability
     advice = None
     if density.reachable_deg is not None:
         with clock.stage("advice"):
@@ -129,6 +135,7 @@ def hollow(
             hollowed=True,
             reachable_deg=density.reachable_deg,
             advice=advice,
+            drainage=found.drainage,
         )
         findings = run_rules(subject, settings)
         before = stability(solid.manifold, first_layer)
@@ -148,8 +155,15 @@ def hollow(
         findings=findings,
         advice=advice,
         supports=supports,
+        drainage=found.drainage,
         seconds=clock.seconds,
     )
+
+
+def drain_keys(count: int | None, diameter_mm: float | None) -> dict[str, object]:
+    """The profile keys that change the drains; None leaves the profile's."""
+    keys = {"drain.count": count, "drain.diameter_mm": diameter_mm}
+    return {key: value for key, value in keys.items() if value is not None}
 
 
 def placed_model(

@@ -6,6 +6,7 @@ to keep, simplified.  The part counts as standing only when that surface does.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import isosurface
 from printprep.density.outcome import PaperSolver, density_of, paper_density
+from printprep.drains.part import Drainer
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability
 from printprep.voxel.distance import DepthField
@@ -23,29 +25,66 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.density.program import Choice, Program
-    from printprep.types import Base, Density, Domain, Lean, Part, Plane, Solid, Stability
+    from printprep.profiles import Profile
+    from printprep.types import (
+        Base,
+        Density,
+        Domain,
+        Drainage,
+        Lean,
+        Part,
+        Plane,
+        Solid,
+        Stability,
+    )
 
 # A new solve aims higher by what was lost and this much more.
 SAFETY_DEG = 0.02
 MOST_SOLVES = 6
 
 
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """What was solved, what came of it, and how that stands and drains (None: not asked to)."""
+
+    density: Density
+    part: Part
+    stability: Stability
+    drainage: Drainage | None
+
+
 def settle_lean(
-    solid: Solid, room: Manifold, program: Program, choice: Choice, lean: Lean
-) -> tuple[Density, Part, Stability]:
+    solid: Solid,
+    room: Manifold,
+    program: Program,
+    choice: Choice,
+    lean: Lean,
+    drainer: Drainer | None = None,
+) -> Settled:
     """The part of the lightest filling whose final surface stands at the lean.
 
-    Where the lean is out of reach the part stands as far as the choice says.
+    Where the lean is out of reach the part stands as far as the choice says.  Holes and what is
+    filled for them are weighed: once they are known, the program is solved again with them.
 
     Parameters
     ----------
     room : all that may be cavity;  choice : base and first solution.
     """
+    bodies, weighed = program.bodies, False
     margin = program.profile.stability.lean_margin_deg
     for _ in range(MOST_SOLVES):
         density = density_of(choice, program)
-        part = carve(solid, choice.base, room, program, density.planes)
+        part = carve(solid, choice.base, room, program.profile, bodies, density.planes)
+        drainage = None
+        if drainer is not None:
+            part, drainage = drainer.drain(part)
         standing = stability(part.manifold, program.profile.printer.first_layer_mm)
+        if drainer is not None and drainage and not weighed:
+            weighed = True
+            if drainer.taken_mm3 > 0:
+                program = program.drilled(drainer.bores, room - drainer.filled)
+                choice = program.solve(choice.base, lean, margin)
+                continue
         tilt_deg = tilt_toward(standing, lean)
         if choice.reached < np.inf or tilt_deg is None or tilt_deg >= lean.angle_deg:
             break
@@ -54,7 +93,7 @@ def settle_lean(
         if density_of(higher, program).aim_deg == density.aim_deg:
             break
         choice = higher
-    return density, part, standing
+    return Settled(density, part, standing, drainage)
 
 
 def settle_paper(
@@ -64,7 +103,8 @@ def settle_paper(
     choice: Choice,
     solver: PaperSolver = "plane",
     device: str = "cpu",
-) -> tuple[Density, Part, Stability]:
+    drainer: Drainer | None = None,
+) -> Settled:
     """The part of the paper's objective, on the base that the lean program chose.
 
     The objective knows no lean: it stands as far as it stands.  One plane serves all bodies; where
@@ -73,8 +113,12 @@ def settle_paper(
     density = paper_density(program, choice, solver, device)
     if solver == "adam":
         room = room ^ _below_half(density, program.interior.domain)
-    part = carve(solid, choice.base, room, program, density.planes)
-    return density, part, stability(part.manifold, program.profile.printer.first_layer_mm)
+    part = carve(solid, choice.base, room, program.profile, program.bodies, density.planes)
+    drainage = None
+    if drainer is not None:
+        part, drainage = drainer.drain(part)
+    standing = stability(part.manifold, program.profile.printer.first_layer_mm)
+    return Settled(density, part, standing, drainage)
 
 
 def _below_half(density: Density, domain: Domain) -> Manifold:
@@ -97,9 +141,10 @@ def carve(
     solid: Solid,
     base: Base | None,
     room: Manifold,
-    program: Program,
+    profile: Profile,
+    bodies: Sequence[Manifold],
     planes: Sequence[Plane | None],
 ) -> Part:
-    """The part with its cavity above the planes."""
-    void = cut(room, program.bodies, planes)
-    return make_part(solid, base, cavities_of(void, program.profile.min_feature_mm))
+    """The part with its cavity above the planes, one for each body of the solid."""
+    void = cut(room, bodies, planes)
+    return make_part(solid, base, cavities_of(void, profile.min_feature_mm))

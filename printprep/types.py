@@ -289,6 +289,37 @@ class Supports:
 
 
 @dataclass(frozen=True)
+class Drain:
+    """A round hole from a cavity to the outside.
+
+    role : an outlet empties a pool, a vent lets air in;  cavity : index among the part's.
+    centre_mm : the middle of its mouth, on the outside;  axis : unit vector, outward.
+    length_mm : of its axis in material.
+    """
+
+    role: Literal["outlet", "vent"]
+    cavity: int
+    centre_mm: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    diameter_mm: float
+    length_mm: float
+
+
+@dataclass(frozen=True)
+class Drainage:
+    """How a part drains as it stands on the plate.
+
+    drains : cavity by cavity, outlets first.
+    filled_mm3 : of the cavities' floors, where liquid would stand that no outlet takes.
+    closed_mm3 : volumes of cavities that no hole opens: they are filled.
+    """
+
+    drains: tuple[Drain, ...]
+    filled_mm3: float
+    closed_mm3: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Advice:
     """What would make a lean that is out of reach feasible.
 
@@ -319,6 +350,7 @@ class HollowResult:
     findings: tuple[Finding, ...]
     advice: Advice | None = None
     supports: Supports | None = None
+    drainage: Drainage | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
 

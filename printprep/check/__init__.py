@@ -4,6 +4,7 @@
 """
 
 from printprep.check import (  # noqa: F401  (imported to register their rules)
+    drained,
     fits_bed,
     lean_out_of_reach,
     no_contact,

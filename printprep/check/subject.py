@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from printprep.check.walls import Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Advice, Lean, Repair, Stability
+from printprep.types import Advice, Drainage, Lean, Repair, Stability
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -27,6 +27,7 @@ class Subject:
     hollowed : True for a part of ours, False for a file as it came.
     reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
     advice : what would make it feasible, with ``reachable_deg``.
+    drainage : how it drains, None where no drains were asked for.
     """
 
     part: Manifold
@@ -38,6 +39,7 @@ class Subject:
     hollowed: bool
     reachable_deg: float | None = None
     advice: Advice | None = None
+    drainage: Drainage | None = None
 
     @property
     def size_mm(self) -> tuple[float, float, float]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from printprep.cli.drains import check_drains, check_plugs_output, drain_options, plug_findings
 from printprep.cli.options import (
     model_argument,
     output_form_options,
@@ -109,6 +110,28 @@ Examples:
     help="Carry the ceilings of cavities by vaults inside them, so that they print without "
     "support (filament only; takes half a minute and more).",
 )
+@click.option(
+    "--drains",
+    "drain_count",
+    type=click.IntRange(0, 16),
+    metavar="N",
+    help="Drain every cavity by N holes at least, one of them a vent. Default: the profile's, two "
+    "for resin and powder.",
+)
+@click.option(
+    "--drain-diameter",
+    "drain_diameter_mm",
+    type=float,
+    metavar="MM",
+    help="Diameter of the drains (key drain.diameter_mm).",
+)
+@click.option("--no-drains", is_flag=True, help="Leave cavities sealed.")
+@click.option(
+    "--plugs",
+    type=click.Path(path_type=Path),
+    metavar="OUT.3mf",
+    help="Write tapered plugs for the drains too, each an object of its own.",
+)
 @output_form_options("none")
 def command(
     model: Path,
@@ -119,6 +142,10 @@ def command(
     wall_mm: float | None,
     simulate: bool,
     verify_it: bool,
+    drain_count: int | None,
+    drain_diameter_mm: float | None,
+    no_drains: bool,
+    plugs: Path | None,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -136,13 +163,19 @@ def command(
     from printprep.progress import for_terminal
     from printprep.report.by_hand import check_slicer
     from printprep.report.export import check_output, format_findings, write_part
+    from printprep.report.plugs import write_plugs
 
     target = Path(f"{model.stem}-hollow.3mf") if output is None else output
     check_output(target)
     _refuse_to_replace(model, target)
     progress = for_terminal(quiet=quiet)
-    changed = overrides(settings, wall_mm)
-    check_slicer(load_profile(profile, changed), slicer)
+    drains = drain_options(drain_count, drain_diameter_mm, no_drains)
+    changed = overrides(settings, wall_mm, drains)
+    loaded = load_profile(profile, changed)
+    check_slicer(loaded, slicer)
+    check_drains(loaded, drain_diameter_mm, plugs)
+    if plugs is not None:
+        check_plugs_output(plugs, target, model)
     if verify_it:
         from printprep.slicer.verify_result import check_verifiable
 
@@ -155,6 +188,8 @@ def command(
         **options,
     )
     result = _with_findings(result, format_findings(result.profile, target, slicer))
+    if plugs is not None:
+        result = _with_findings(result, plug_findings(result.drainage, plugs))
     if simulate:
         with progress.stage("simulate"):
             result = _with_simulation(result)
@@ -165,6 +200,8 @@ def command(
     if not stopped:
         with progress.stage("write"):
             write_part(result, target, slicer)
+            if plugs is not None and result.drainage is not None and result.drainage.drains:
+                write_plugs(result, plugs)
     written = None if stopped else target
     _say(found, model, written, verified, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if stopped else 0

@@ -117,8 +117,12 @@ def set_option(command: Command) -> Command:
     )(command)
 
 
-def overrides(settings: Sequence[str], wall_mm: float | None = None) -> Mapping[str, object]:
-    """The profile keys that --set and --wall change.
+def overrides(
+    settings: Sequence[str],
+    wall_mm: float | None = None,
+    more: Mapping[str, object] | None = None,
+) -> Mapping[str, object]:
+    """The profile keys that --set, --wall and a command's own options change.
 
     Raises UsageError for a --set without a key, and for a key given twice.
     """
@@ -133,6 +137,7 @@ def overrides(settings: Sequence[str], wall_mm: float | None = None) -> Mapping[
         pairs.append((key.strip(), value.strip()))
     if wall_mm is not None:
         pairs.append(("wall_mm", wall_mm))
+    pairs += (more or {}).items()
     changed = dict(pairs)
     if len(changed) < len(pairs):
         keys = [key for key, _ in pairs]

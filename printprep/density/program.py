@@ -14,6 +14,7 @@ from printprep.density.lean import LeanSolution, solve_lean
 from printprep.mesh.measure import bodies, mass_properties
 from printprep.stand.contact import contact_of, section_at_bed
 from printprep.types import Base, Lean
+from printprep.voxel.domain import reweighed
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
@@ -122,6 +123,15 @@ class Program:
             volume += float(solution.filling.moments[0])
             bound += solution.filling.bound
         return Choice(base, tuple(parts), volume, bound)
+
+    def drilled(self, bores: Manifold, room: Manifold) -> Program:
+        """The program of the same solid with holes in it.
+
+        bores : what the holes take, of the solid and of the room;  room : what there is left of it
+        for cavities.
+        """
+        interior = reweighed(self.interior, room - bores)
+        return Program(self.solid - bores, interior, self.profile)
 
     def growth_that_reaches(self, lean: Lean) -> float | None:
         """Least growth, in steps of half a millimetre up to 30 mm, whose base reaches a lean."""

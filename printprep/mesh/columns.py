@@ -68,6 +68,12 @@ def winding_at(points: Float, vertices: Float, faces: Int) -> Float:
     return winding_in_columns(vertices, faces, points[:, :2], np.arange(len(points)), points[:, 2])
 
 
+def winding_at_of_closed(points: Float, vertices: Float, faces: Int) -> Float:
+    """(n,) winding numbers of scattered points about a mesh known to be closed: no lids to find."""
+    crossings = cross(vertices, faces, points[:, :2])
+    return _counted(crossings, len(points), np.arange(len(points)), points[:, 2])
+
+
 def _lids(faces: Int) -> Int:
     """(k, 2) directed edges that would balance the faces' own, so many times as they miss."""
     edges = directed_edges(faces)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Advice, Base, Finding, HollowResult, Repair, Simulation
+    from printprep.types import Advice, Base, Drainage, Finding, HollowResult, Repair, Simulation
 
 
 def to_text(data: dict[str, Any]) -> str:
@@ -119,6 +119,27 @@ def _supports(result: HollowResult) -> dict[str, Any] | None:
     }
 
 
+def _drains(found: Drainage | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "count": len(found.drains),
+        "items": [
+            {
+                "role": drain.role,
+                "cavity": drain.cavity,
+                "centre_mm": _place(drain.centre_mm),
+                "axis": [number(value) for value in drain.axis],
+                "diameter_mm": number(drain.diameter_mm),
+                "length_mm": number(drain.length_mm, 3),
+            }
+            for drain in found.drains
+        ],
+        "filled_mm3": number(found.filled_mm3),
+        "closed_mm3": [number(volume) for volume in found.closed_mm3],
+    }
+
+
 def _advice(advice: Advice | None) -> dict[str, Any] | None:
     if advice is None:
         return None
@@ -154,6 +175,7 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "reachable_deg": number(result.density.reachable_deg),
         "advice": _advice(result.advice),
         "supports": _supports(result),
+        "drains": _drains(result.drainage),
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

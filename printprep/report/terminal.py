@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Finding, HollowResult, Repair
+    from printprep.types import Drainage, Finding, HollowResult, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
@@ -49,6 +49,8 @@ def show_result(
     facts.add_row("cavities", _cavities(result.part.cavities))
     if result.supports is not None:
         facts.add_row("held inside by", _supports(result))
+    if result.drainage is not None and result.part.cavities:
+        facts.add_row("drains", _drains(result.drainage))
     facts.add_row("base", _base(result))
     proof = _proof(result)
     if proof is not None:
@@ -165,6 +167,23 @@ def _supports(result: HollowResult) -> str:
     if found.unsupported_mm2 or found.islands:
         words += f"; {found.unsupported_mm2:.1f} mm² still unsupported"
     return words
+
+
+def _drains(found: Drainage) -> str:
+    """As "5 of 3.5 mm (4 outlets, 1 vent), 0.16 cm³ of floors filled"."""
+    if not found.drains:
+        return "none"
+    outlets = sum(drain.role == "outlet" for drain in found.drains)
+    vents = len(found.drains) - outlets
+    roles = f"{_counted(outlets, 'outlet')}, {_counted(vents, 'vent')}"
+    words = f"{len(found.drains)} of {found.drains[0].diameter_mm:g} mm ({roles})"
+    if found.filled_mm3 >= 1:
+        words += f", {_plain(found.filled_mm3 / 1000)} cm³ of floors filled"
+    return words
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def _facts_table() -> Table:

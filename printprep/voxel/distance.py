@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.columns import winding_at
+from printprep.mesh.columns import winding_at_of_closed
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
 from printprep.types import Grid
 from printprep.voxel.grid import points_mm, subdivided
@@ -56,7 +56,7 @@ class Surface:
         size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
         jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, (len(points), 2)) * size
         moved = np.column_stack([points[:, :2] + jitter, points[:, 2]])
-        result: NDArray[np.bool_] = winding_at(moved, self.vertices, self.faces) > 0.5
+        result: NDArray[np.bool_] = winding_at_of_closed(moved, self.vertices, self.faces) > 0.5
         return result
 
     def depth_mm(self, points: Float) -> Float:

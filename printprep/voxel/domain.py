@@ -67,6 +67,18 @@ def weigh_interior(solid: Solid, depths: Depths, room: Manifold) -> Interior:
     return Interior(domain, moments[:, free])
 
 
+def reweighed(interior: Interior, room: Manifold) -> Interior:
+    """The same solid with less room in it for a cavity."""
+    domain = interior.domain
+    moments = moments_in_cells(room, domain.grid, LINES)
+    share = moments[0] / domain.grid.pitch_mm**3
+    free = share > 0
+    changed = replace(
+        domain, shell=(domain.depth_mm > 0) & ~free, interior=free, free=free, share=share
+    )
+    return Interior(changed, moments[:, free])
+
+
 def with_base(domain: Domain, base: Manifold) -> Domain:
     """The domain with the voxels of a base marked."""
     index = np.arange(domain.free.size)

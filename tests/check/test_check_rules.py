@@ -31,6 +31,7 @@ def test_a_sound_part_raises_nothing_but_information(fdm):
 
 def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
     assert set(rules()) == {
+        "drain-filled",
         "fits-bed",
         "lean-out-of-reach",
         "no-contact",

@@ -1,0 +1,96 @@
+"""Drains in a part: what ``hollow`` asks for, from one solve to the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from printprep.drains.channel import bored
+from printprep.drains.place import Drained, Hole, drained
+from printprep.mesh.written import as_written
+from printprep.types import Drain, Drainage, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from printprep.profiles import Profile
+    from printprep.types import Float
+
+
+class Drainer:
+    """Drains one part after another of the same solid, and keeps the holes that still serve.
+
+    bores : what the holes of the last part take, as solids;  filled : what was filled in it.
+    """
+
+    def __init__(self, profile: Profile) -> None:
+        from manifold3d import Manifold
+
+        assert profile.drain.diameter_mm is not None
+        self.diameter_mm = profile.drain.diameter_mm
+        self.profile = profile
+        self.bores = Manifold()
+        self.filled = Manifold()
+        self._holes: tuple[Hole, ...] = ()
+
+    @property
+    def taken_mm3(self) -> float:
+        """What holes and filling change of the part."""
+        return float(self.bores.volume() + self.filled.volume())
+
+    def drain(self, part: Part) -> tuple[Part, Drainage]:
+        """The part with its cavities drained."""
+        from manifold3d import Manifold, OpType
+
+        found = drained(
+            part.outside,
+            part.cavities,
+            diameter_mm=self.diameter_mm,
+            count=self.profile.drain.count,
+            wall_mm=self.profile.wall_mm,
+            min_feature_mm=self.profile.min_feature_mm,
+            known=self._holes,
+        )
+        self._holes = found.holes
+        self.bores = _united([bored(hole.channel) for hole in found.holes])
+        self.filled = _united(part.cavities) - _united(found.cavities)
+        whole = Manifold.batch_boolean([part.outside, *found.cavities, self.bores], OpType.Subtract)
+        return (
+            Part(
+                as_written(whole),
+                part.outside,
+                found.cavities,
+                part.base,
+                part.name,
+                part.placement,
+            ),
+            _drainage(found),
+        )
+
+
+def _united(solids: Sequence[Manifold]) -> Manifold:
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(list(solids), OpType.Add) if solids else Manifold()
+
+
+def _drainage(found: Drained) -> Drainage:
+    return Drainage(tuple(map(_drain, found.holes)), found.filled_mm3, found.closed_mm3)
+
+
+def _drain(hole: Hole) -> Drain:
+    channel = hole.channel
+    return Drain(
+        role=hole.role,
+        cavity=hole.cavity,
+        centre_mm=_place(channel.centre_mm),
+        axis=_place(channel.axis),
+        diameter_mm=channel.diameter_mm,
+        length_mm=channel.length_mm,
+    )
+
+
+def _place(point: Float) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in point)
+    return x, y, z
