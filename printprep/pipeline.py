@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from printprep.types import Model, Solid, Supports
 
 Objective = Literal["lean", "paper"]
+Fill = Literal["cavity", "infill"]
 
 
 def hollow(
@@ -43,6 +44,8 @@ def hollow(
     self_support: bool = False,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
+    fill: Fill = "cavity",
+    slicer: Path | None = None,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the lean asked for.
@@ -64,6 +67,10 @@ def hollow(
     self_support : carry the cavities' ceilings from inside, where the process needs it (fdm).
     drains : holes in each cavity, at least, 0 for none;  drain_diameter_mm : how wide; None takes
         the profile's.
+    fill : "cavity", or "infill": the profile's sparse infill, and dense ballast where it must weigh
+        (fdm).
+    slicer : the PrusaSlicer that weighs an infill print; None takes one that is found, and where
+        none is, the print is estimated.
 
     Raises
     ------
@@ -73,6 +80,8 @@ def hollow(
     from printprep.check import Subject, run_rules
     from printprep.density.program import Program
     from printprep.drains.part import Drainer
+    from printprep.infill.fill import infilled, slicer_at_hand
+    from printprep.infill.options import check_fill
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper
@@ -86,6 +95,7 @@ def hollow(
     asked = lean_of(lean, settings.stability.lean_deg)
     _check_resolution(resolution)
     _check_solver(objective, solver, device)
+    check_fill(fill, settings, objective=objective, self_support=self_support, slicer=slicer)
     clock = Stopwatch(progress)
     with clock.stage("read"):
         placed = placed_model(model, units, up, scale, height_mm, size_mm)
@@ -93,6 +103,17 @@ def hollow(
         solid = repair(placed)
         if pose is not None:
             placed, solid = _posed(placed, solid, pose)
+    if fill == "infill":
+        return infilled(
+            placed,
+            solid,
+            settings,
+            asked,
+            resolution=resolution,
+            base=base,
+            slicer=slicer_at_hand(slicer),
+            clock=clock,
+        )
     with clock.stage("voxelize"):
         depths = measure_depths(
             solid,

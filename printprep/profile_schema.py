@@ -77,6 +77,17 @@ class SlicerSettings(_Frozen):
     check_with: Literal["prusa-slicer"] | None = None
 
 
+class Infill(_Frozen):
+    """The slicer's sparse infill, where it takes the place of cavities.
+
+    perimeters : lines of wall; None: as many as the wall is thick.
+    """
+
+    pattern: Literal["lightning", "gyroid"]
+    density: float = _bounded(0.01, 0.9)
+    perimeters: int | None = Field(default=None, ge=1, le=50, strict=True)
+
+
 class Profile(_Frozen):
     """One printer, material and process, with the limits that a part has to keep."""
 
@@ -90,6 +101,7 @@ class Profile(_Frozen):
     drain: Drain = Drain()
     stability: Stability
     slicer: SlicerSettings = SlicerSettings()
+    infill: Infill | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -111,6 +123,8 @@ class Profile(_Frozen):
                     raise _impossible(f"printer.{key}", f"has no meaning for {self.process}")
             if self.slicer.check_with is not None:
                 raise _impossible("slicer.check_with", f"has no slicer for {self.process}")
+            if self.infill is not None:
+                raise _impossible("infill", f"has no meaning for {self.process}")
         if drain.count and drain.diameter_mm is None:
             raise _impossible("drain.diameter_mm", "is needed where drain.count is above 0")
         return self

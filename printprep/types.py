@@ -333,8 +333,39 @@ class Advice:
 
 
 @dataclass(frozen=True, eq=False)
+class Infill:
+    """A part whose inside is the slicer's sparse infill, and what of it prints dense instead.
+
+    pattern, density, perimeters, layers : what the object carries;  ballast : solids that cover
+    what prints dense, in the part's coordinates;  ballast_g : what they add to the sparse print.
+    moments : (4,) volume in mm³ of all that is deposited, and its first moments in mm⁴.
+    slicer : its name and version where the print was weighed in its G-code, None where it is
+    estimated;  slices : how often it was asked.
+    """
+
+    pattern: str
+    density: float
+    perimeters: int
+    layers: int
+    ballast: tuple[Manifold, ...]
+    ballast_g: float
+    moments: Float
+    slicer: str | None
+    slices: int
+
+    @property
+    def centre_mm(self) -> tuple[float, float, float]:
+        """The centre of mass of the print."""
+        x, y, z = (float(value) for value in self.moments[1:] / self.moments[0])
+        return x, y, z
+
+
+@dataclass(frozen=True, eq=False)
 class HollowResult:
-    """Everything ``hollow`` found out.  Masses are geometric volume times material density."""
+    """Everything ``hollow`` found out.  Masses are geometric volume times material density.
+
+    Where ``infill`` takes the place of cavities, mass and stability are those of the print.
+    """
 
     model: Model
     solid: Solid
@@ -353,6 +384,7 @@ class HollowResult:
     drainage: Drainage | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
+    infill: Infill | None = None
 
     @property
     def lean_deg(self) -> float:

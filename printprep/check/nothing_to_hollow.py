@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 @rule("nothing-to-hollow")
 def nothing_to_hollow(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """Prevents the surprise of a part that weighs what it did before."""
-    if not subject.hollowed or subject.cavities:
+    if not subject.hollowed or subject.infilled or subject.cavities:
         return
     yield Finding(
         "nothing-to-hollow",

@@ -25,6 +25,7 @@ class Subject:
     stability : how it stands;  lean : what it is asked to stand.
     repair : what it took to make a solid of the file.
     hollowed : True for a part of ours, False for a file as it came.
+    infilled : True for a part of ours whose inside is the slicer's infill, and has no cavity.
     reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
     advice : what would make it feasible, with ``reachable_deg``.
     drainage : how it drains, None where no drains were asked for.
@@ -37,6 +38,7 @@ class Subject:
     lean: Lean
     repair: Repair
     hollowed: bool
+    infilled: bool = False
     reachable_deg: float | None = None
     advice: Advice | None = None
     drainage: Drainage | None = None

@@ -29,6 +29,7 @@ Examples:
   printprep hollow model.stl -o out.3mf
   printprep hollow scan.obj --up y --size 120 --lean 15
   printprep hollow figure.stl -p resin-standard --wall 2.5
+  printprep hollow figure.stl --fill infill
   printprep hollow vase.stl --set printer.layer_height_mm=0.3 --json
 """
 
@@ -132,6 +133,22 @@ Examples:
     metavar="OUT.3mf",
     help="Write tapered plugs for the drains too, each an object of its own.",
 )
+@click.option(
+    "--fill",
+    type=click.Choice(("cavity", "infill")),
+    default="cavity",
+    show_default=True,
+    help="cavity: hollow. infill: the profile's sparse infill carries the ceilings, and what must "
+    "weigh prints dense (filament and 3MF only).",
+)
+@click.option(
+    "--slicer",
+    "prusa_slicer",
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="The PrusaSlicer that weighs prints with infill. Default: PRINTPREP_SLICER, else the one "
+    "on this machine, else they are estimated.",
+)
 @output_form_options("none")
 def command(
     model: Path,
@@ -146,6 +163,7 @@ def command(
     drain_diameter_mm: float | None,
     no_drains: bool,
     plugs: Path | None,
+    prusa_slicer: Path | None,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -176,6 +194,8 @@ def command(
     check_drains(loaded, drain_diameter_mm, plugs)
     if plugs is not None:
         check_plugs_output(plugs, target, model)
+    if options["fill"] == "infill":
+        _check_infill(target, slicer, simulate=simulate)
     if verify_it:
         from printprep.slicer.verify_result import check_verifiable
 
@@ -184,6 +204,7 @@ def command(
         model,
         profile=profile,
         overrides=changed,
+        slicer=prusa_slicer,
         progress=progress,
         **options,
     )
@@ -211,6 +232,17 @@ def _refuse_to_replace(model: Path, target: Path) -> None:
     if target.exists() and model.exists() and target.samefile(model):
         raise UsageError(
             f"{target} is the model itself and would be replaced.", "Name another --output."
+        )
+
+
+def _check_infill(target: Path, slicer: SlicerName, *, simulate: bool) -> None:
+    from printprep.infill.options import check_infill_output
+
+    check_infill_output(target.suffix, slicer)
+    if simulate:
+        raise UsageError(
+            "The simulation takes the mesh for solid, which a print with infill is not.",
+            "Leave out --simulate; --verify measures the tilt in the G-code.",
         )
 
 

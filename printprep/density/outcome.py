@@ -13,8 +13,11 @@ from printprep.voxel.domain import with_base
 PaperSolver = Literal["plane", "adam"]
 
 
-def density_of(choice: Choice, program: Program) -> Density:
-    """The choice as a density on the grid, with one plane for each body of the solid."""
+def density_of(choice: Choice, program: Program, least: float = 0.0) -> Density:
+    """The choice as a density on the grid, with one plane for each body of the solid.
+
+    least : density of a free voxel that is not filled, 0 where it is a cavity.
+    """
     domain = program.interior.domain
     count = len(program.bodies)
     planes: list[Plane | None] = [None] * count
@@ -27,7 +30,7 @@ def density_of(choice: Choice, program: Program) -> Density:
         for cell in part.cells:
             planes[cell] = part.solution.plane
     grid = (domain.shell | domain.free | domain.base).astype(float)
-    grid[domain.free] = 1.0 - domain.share[domain.free] * (1.0 - rho)
+    grid[domain.free] = 1.0 - domain.share[domain.free] * (1.0 - rho) * (1.0 - least)
     grams = program.profile.material.density_g_cm3 / 1000
     reached = choice.reached
     aims = [part.solution.aim_deg for part in choice.parts if part.solution is not None]

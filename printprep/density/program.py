@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -37,11 +38,12 @@ TIE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class BodySolution:
-    """One body: which cells it has, what was solved, and what it weighs at unit density."""
+    """One body: which cells it has, what was solved, and its (4,) moments at unit density."""
 
     cells: tuple[int, ...]
     voxels: NDArray[np.intp]
     solution: LeanSolution | None
+    moments: Float
 
     @property
     def reached(self) -> float:
@@ -68,14 +70,17 @@ class Choice:
 
 
 class Program:
-    """The linear programs of one solid, for any base and any lean."""
+    """The linear programs of one solid, for any base and any lean.
+
+    moments : of each body, (4,), with all its voxels filled.
+    """
 
     def __init__(self, solid: Manifold, interior: Interior, profile: Profile) -> None:
         self.solid = solid
         self.interior = interior
         self.profile = profile
         self.bodies = bodies(solid)
-        self._moments = [_moments(body) for body in self.bodies]
+        self.moments = [_moments(body) for body in self.bodies]
         self._sections = [
             section_at_bed(body, profile.printer.first_layer_mm) for body in self.bodies
         ]
@@ -109,17 +114,17 @@ class Program:
         """The lightest filling of every body for one base."""
         volume, bound = 0.0, 0.0
         parts = []
-        for cells, section, fixed in self._standing(base):
+        for cells, section, fixed in self.standing(base):
             voxels, pool = self._pool(cells)
             fixed = fixed - pool.moments.sum(axis=1)
             contact = contact_of(section)
             if contact is None:
-                parts.append(BodySolution(cells, voxels, None))
+                parts.append(BodySolution(cells, voxels, None, fixed))
                 volume, bound = volume + fixed[0], bound + fixed[0]
                 continue
             footing = contact.footing.toward(lean.azimuth_deg)
             solution = solve_lean(pool, fixed, footing, lean.angle_deg, margin_deg)
-            parts.append(BodySolution(cells, voxels, solution))
+            parts.append(BodySolution(cells, voxels, solution, solution.filling.moments))
             volume += float(solution.filling.moments[0])
             bound += solution.filling.bound
         return Choice(base, tuple(parts), volume, bound)
@@ -132,6 +137,18 @@ class Program:
         """
         interior = reweighed(self.interior, room - bores)
         return Program(self.solid - bores, interior, self.profile)
+
+    def weighing(self, moments: Sequence[Float]) -> Program:
+        """The same programs for bodies that, with all their voxels filled, weigh otherwise."""
+        other = copy(self)
+        other.moments = list(moments)
+        return other
+
+    def unfilled(self, base: Base | None) -> Float:
+        """(4,) moments of all bodies on a base, with none of their voxels filled."""
+        whole = sum((moments for _, _, moments in self.standing(base)), np.zeros(4))
+        result: Float = whole - self.interior.moments.sum(axis=1)
+        return result
 
     def growth_that_reaches(self, lean: Lean) -> float | None:
         """Least growth, in steps of half a millimetre up to 30 mm, whose base reaches a lean."""
@@ -166,7 +183,7 @@ class Program:
 
     def _heavier(self, base: Base, best: Choice) -> bool:
         """Whether the bare shell with this base, and so with any wider one, outweighs the best."""
-        shell = sum(moments[0] for moments in self._moments) - self.interior.moments[0].sum()
+        shell = sum(moments[0] for moments in self.moments) - self.interior.moments[0].sum()
         return bool(shell + (base.manifold - self.feet.slab).volume() > best.volume_mm3)
 
     def _around(self, growth_mm: float) -> Iterator[float]:
@@ -180,13 +197,13 @@ class Program:
             part.solution is not None and part.solution.plane is None for part in choice.parts
         )
 
-    def _standing(self, base: Base | None) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
+    def standing(self, base: Base | None) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
         """The bodies that stand apart with a base: which of the solid's, section, moments."""
         from manifold3d import CrossSection
 
         if base is None:
             for number, (section, moments) in enumerate(
-                zip(self._sections, self._moments, strict=True)
+                zip(self._sections, self.moments, strict=True)
             ):
                 yield (number,), section, moments
             return
@@ -196,7 +213,7 @@ class Program:
             moments = np.zeros(4)
             for number in cells:
                 section = section + self._sections[number]
-                moments = moments + self._moments[number]
+                moments = moments + self.moments[number]
             for piece in pieces:
                 section = section + section_at_bed(piece, first_layer)
                 moments = moments + _moments(piece - self.feet.slab)

@@ -15,8 +15,12 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 
-def balance_json(part: Manifold, first_layer_mm: float) -> dict[str, Any]:
+def balance_json(
+    part: Manifold, first_layer_mm: float, centre_mm: Sequence[float] | None = None
+) -> dict[str, Any]:
     """Of the whole part, in its own coordinates (on the bed, z up).
+
+    centre_mm : the centre of mass of a part that is not solid throughout.
 
     bounds_mm, centre_of_mass_mm;  contact : hull (counter-clockwise) and area of the first layer's
     section, null without one;  bodies : how many parts do not touch each other.
@@ -24,7 +28,9 @@ def balance_json(part: Manifold, first_layer_mm: float) -> dict[str, Any]:
     contact = contact_of(section_at_bed(part, first_layer_mm))
     return {
         "bounds_mm": [_place(corner) for corner in np.reshape(part.bounding_box(), (2, 3))],
-        "centre_of_mass_mm": _place(mass_properties(part).centre_mm),
+        "centre_of_mass_mm": _place(
+            mass_properties(part).centre_mm if centre_mm is None else centre_mm
+        ),
         "contact": None
         if contact is None
         else {

@@ -68,10 +68,13 @@ def check_output(path: Path) -> None:
 
 def part_bytes(result: HollowResult, suffix: str, slicer: SlicerName = "prusa") -> bytes:
     """The file's content; the same result and version give the same bytes."""
+    from printprep.infill.options import check_infill_output
     from printprep.mesh.write import to_bytes
     from printprep.mesh.written import as_written
 
     manifold = as_written(result.part.manifold)
+    if result.infill is not None:
+        check_infill_output(suffix, slicer)
     if suffix.lower() == ".3mf":
         return _as_3mf(result, manifold, plain=slicer != "prusa")
     return to_bytes(manifold, suffix)
@@ -115,6 +118,7 @@ def _set_by_hand(profile: Profile, slicer: SlicerName) -> Finding:
 
 def _as_3mf(result: HollowResult, manifold: Manifold, *, plain: bool) -> bytes:
     from printprep import __version__
+    from printprep.infill.item import item_of
     from printprep.mesh.written import written_arrays
     from printprep.report.json import embedded_json, to_text
     from printprep.report.thumbnail import thumbnail_png
@@ -123,12 +127,15 @@ def _as_3mf(result: HollowResult, manifold: Manifold, *, plain: bool) -> bytes:
     vertices, faces = written_arrays(manifold)
     name = result.part.name
     width, depth, _ = result.profile.printer.bed_mm
-    item = Item(
-        name=name,
-        volumes=[Volume(name, vertices, faces)],
-        settings=result.profile.slicer.object_settings,
-        translation_mm=(width / 2, depth / 2, 0.0 - float(vertices[:, 2].min())),
-    )
+    if result.infill is not None:
+        item = item_of(manifold, result.infill.ballast, name, result.profile)
+    else:
+        item = Item(
+            name=name,
+            volumes=[Volume(name, vertices, faces)],
+            settings=result.profile.slicer.object_settings,
+            translation_mm=(width / 2, depth / 2, 0.0 - float(vertices[:, 2].min())),
+        )
     return write_3mf(
         [item],
         thumbnail_png=thumbnail_png(vertices, faces, THUMBNAIL_SIZE),

@@ -18,7 +18,16 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Advice, Base, Drainage, Finding, HollowResult, Repair, Simulation
+    from printprep.types import (
+        Advice,
+        Base,
+        Drainage,
+        Finding,
+        HollowResult,
+        Infill,
+        Repair,
+        Simulation,
+    )
 
 
 def to_text(data: dict[str, Any]) -> str:
@@ -140,6 +149,20 @@ def _drains(found: Drainage | None) -> dict[str, Any] | None:
     }
 
 
+def _infill(infill: Infill | None) -> dict[str, Any] | None:
+    if infill is None:
+        return None
+    return {
+        "pattern": infill.pattern,
+        "density": number(infill.density),
+        "perimeters": infill.perimeters,
+        "solid_layers": infill.layers,
+        "ballast_g": number(infill.ballast_g),
+        "weighed_with": infill.slicer,
+        "slices": infill.slices,
+    }
+
+
 def _advice(advice: Advice | None) -> dict[str, Any] | None:
     if advice is None:
         return None
@@ -166,7 +189,11 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "solid_mass_g": number(result.solid_mass_g),
         "mass_g": number(result.mass_g),
         "mass_ratio": number(result.mass_g / result.solid_mass_g),
-        **balance_json(result.part.manifold, profile.printer.first_layer_mm),
+        **balance_json(
+            result.part.manifold,
+            profile.printer.first_layer_mm,
+            None if result.infill is None else result.infill.centre_mm,
+        ),
         "tilt_solid_deg": number(tilt_toward(result.stability_solid, result.lean)),
         "tilt_deg": number(tilt_toward(result.stability, result.lean)),
         "lean_deg": number(result.lean_deg),
@@ -176,6 +203,7 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "advice": _advice(result.advice),
         "supports": _supports(result),
         "drains": _drains(result.drainage),
+        "infill": _infill(result.infill),
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Drainage, Finding, HollowResult, Repair
+    from printprep.types import Drainage, Finding, HollowResult, Infill, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
@@ -46,7 +46,11 @@ def show_result(
         )
     if result.simulation is not None:
         facts.add_row("simulated", simulated(result.simulation))
-    facts.add_row("cavities", _cavities(result.part.cavities))
+    if result.infill is None:
+        facts.add_row("cavities", _cavities(result.part.cavities))
+    else:
+        facts.add_row("inside", _infill(result.infill))
+        facts.add_row("weighed", _weighed(result.infill))
     if result.supports is not None:
         facts.add_row("held inside by", _supports(result))
     if result.drainage is not None and result.part.cavities:
@@ -186,6 +190,20 @@ def _counted(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
+def _infill(infill: Infill) -> str:
+    walls = f"{infill.density:.0%} {infill.pattern}, {infill.perimeters} perimeters"
+    if not infill.ballast:
+        return f"{walls}; no ballast needed"
+    return f"{walls}; ballast, printed dense, adds {_mass(infill.ballast_g)}"
+
+
+def _weighed(infill: Infill) -> str:
+    if infill.slicer is None:
+        return "estimated"
+    times = "once" if infill.slices == 1 else f"{infill.slices} times"
+    return f"in the G-code of {infill.slicer}, sliced {times}"
+
+
 def _facts_table() -> Table:
     table = Table.grid(padding=(0, 2, 0, 0))
     table.add_column(style="dim", no_wrap=True)
@@ -214,7 +232,9 @@ def _proof(result: HollowResult) -> str | None:
     """What the certificate says, where there was something to choose."""
     certificate, aim_deg = result.density.certificate, result.density.aim_deg
     reachable = result.density.reachable_deg
-    if certificate is None or aim_deg is None or not result.part.cavities:
+    if certificate is None or aim_deg is None:
+        return None
+    if not result.part.cavities and (result.infill is None or not result.infill.ballast):
         return None
     if reachable is not None and reachable <= 0:
         return None

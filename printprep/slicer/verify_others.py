@@ -6,7 +6,6 @@ gyroid, and with lightning infill, which only holds up ceilings.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,6 @@ from printprep.errors import UsageError
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.profiles import Profile
     from printprep.slicer.process import Slicer
     from printprep.slicer.verify_part import CarriedPart
 
@@ -70,6 +68,7 @@ def slice_others(
     Raises ToolError where the slicer fails.
     """
     from printprep.gcode.measure import measure_gcode
+    from printprep.infill.keys import wall_keys
     from printprep.mesh.write import to_bytes
     from printprep.slicer.verify_rules import tilt_as_printed
 
@@ -78,26 +77,11 @@ def slice_others(
     gcode = folder / "other.gcode"
     others = []
     for way, infill in _WAYS:
-        program.slice(stl, gcode, {**settings, **_walls(part.profile), **infill}, load)
+        program.slice(stl, gcode, {**settings, **wall_keys(part.profile), **infill}, load)
         printed = measure_gcode(gcode)
         tilt = tilt_as_printed(printed, part.lean)
         others.append(Other(way, printed.mass_g, printed.said.seconds, tilt))
     return tuple(others)
-
-
-def _walls(profile: Profile) -> dict[str, str]:
-    line, layer = profile.printer.line_width_mm, profile.printer.layer_height_mm
-    assert line is not None  # an fdm profile has one
-    layers = str(_count(profile.wall_mm, layer))
-    return {
-        "perimeters": str(_count(profile.wall_mm, line)),
-        "top_solid_layers": layers,
-        "bottom_solid_layers": layers,
-    }
-
-
-def _count(thick_mm: float, each_mm: float) -> int:
-    return math.ceil(thick_mm / each_mm - 1e-6)
 
 
 def _refuse_another(part: CarriedPart, model: Path, size_mm: np.ndarray) -> None:

@@ -7,6 +7,7 @@ margin, and a slicer rounds beads and layers.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,23 +35,12 @@ _SETTINGS = "Slice it with the profile's settings: `printprep profiles export`."
 def standing(printed: Printed | Balance) -> Stability:
     """A print or a body of it as a ``Stability``: judged by the same rules as a part."""
     from printprep.stand.contact import Contact
+    from printprep.stand.stability import balanced
 
     if printed.tilt_deg is None:
-        nowhere = np.zeros((0, 2))
-        return Stability(nowhere, 0.0, printed.centre_of_mass_mm, None, None, None)
+        return balanced(None, printed.centre_of_mass_mm)
     contact = Contact(printed.contact_polygon_mm, printed.contact_area_mm2)
-    footing = contact.footing
-    ahead = footing.offsets_mm - footing.normals @ np.array(printed.centre_of_mass_mm[:2])
-    weakest = int(np.argmin(ahead))
-    nx, ny = footing.normals[weakest]
-    return Stability(
-        support_polygon_mm=printed.contact_polygon_mm,
-        contact_area_mm2=printed.contact_area_mm2,
-        centre_of_mass_mm=printed.centre_of_mass_mm,
-        tilt_deg=printed.tilt_deg,
-        weakest_edge=weakest,
-        weakest_azimuth_deg=float(np.degrees(np.arctan2(ny, nx)) % 360.0),
-    )
+    return replace(balanced(contact, printed.centre_of_mass_mm), tilt_deg=printed.tilt_deg)
 
 
 def tilt_as_printed(printed: Printed, lean: Lean) -> float:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from printprep.mesh.measure import bodies, mass_properties
-from printprep.stand.contact import contact_of, section_at_bed
+from printprep.stand.contact import Contact, contact_of, section_at_bed
 from printprep.types import Stability
 
 if TYPE_CHECKING:
@@ -25,24 +26,32 @@ def stability(manifold: Manifold, first_layer_mm: float) -> Stability:
     manifold : the part, sitting on the bed, hollow as it is.
     first_layer_mm : height of the first layer; contact is the section at half of it.
     """
-    each = [_one_body(body, first_layer_mm) for body in bodies(manifold)]
-    return min(each, key=lambda found: -np.inf if found.tilt_deg is None else found.tilt_deg)
+    return least(_one_body(body, first_layer_mm) for body in bodies(manifold))
 
 
-def _one_body(body: Manifold, first_layer_mm: float) -> Stability:
-    centre = mass_properties(body).centre_mm
-    contact = contact_of(section_at_bed(body, first_layer_mm))
+def balanced(contact: Contact | None, centre_mm: tuple[float, float, float]) -> Stability:
+    """How a body stands on a contact (None: it has none) with its centre of mass there."""
     if contact is None:
-        return Stability(np.zeros((0, 2)), 0.0, centre, None, None, None)
+        return Stability(np.zeros((0, 2)), 0.0, centre_mm, None, None, None)
     footing = contact.footing
-    ahead = footing.offsets_mm - footing.normals @ np.array(centre[:2])
+    ahead = footing.offsets_mm - footing.normals @ np.array(centre_mm[:2])
     weakest = int(np.argmin(ahead))
     nx, ny = footing.normals[weakest]
     return Stability(
         support_polygon_mm=contact.polygon_mm,
         contact_area_mm2=contact.area_mm2,
-        centre_of_mass_mm=centre,
-        tilt_deg=float(np.degrees(np.arctan2(ahead[weakest], centre[2]))),
+        centre_of_mass_mm=centre_mm,
+        tilt_deg=float(np.degrees(np.arctan2(ahead[weakest], centre_mm[2]))),
         weakest_edge=weakest,
         weakest_azimuth_deg=float(np.degrees(np.arctan2(ny, nx)) % 360.0),
     )
+
+
+def least(each: Iterable[Stability]) -> Stability:
+    """The one that tips first."""
+    return min(each, key=lambda found: -np.inf if found.tilt_deg is None else found.tilt_deg)
+
+
+def _one_body(body: Manifold, first_layer_mm: float) -> Stability:
+    contact = contact_of(section_at_bed(body, first_layer_mm))
+    return balanced(contact, mass_properties(body).centre_mm)

@@ -49,7 +49,13 @@ class Depths:
 
 
 def measure_depths(
-    solid: Solid, *, resolution: int, wall_mm: float, min_feature_mm: float, margin_mm: float = 0.0
+    solid: Solid,
+    *,
+    resolution: int,
+    wall_mm: float,
+    min_feature_mm: float,
+    margin_mm: float = 0.0,
+    cells_per_wall: float = CELLS_PER_WALL,
 ) -> Depths:
     """Voxelize a solid and measure how deep its material is.
 
@@ -59,17 +65,20 @@ def measure_depths(
     wall_mm : the depth at which a cavity may begin.
     min_feature_mm : a pocket that cannot hold a ball of this diameter stays solid.
     margin_mm : room on the grid around the solid in x and y.
+    cells_per_wall : of the fine field.
     """
     surface = Surface.of(solid.manifold)
     box = np.array(solid.manifold.bounding_box())
     coarse = coarse_depth(surface, grid_over(box[:3], box[3:], resolution, margin_mm))
-    field = _fine_field(surface, coarse, wall_mm)
+    field = _fine_field(surface, coarse, wall_mm, wall_mm / cells_per_wall)
     if field is not None:
         field = close_small_pockets(surface, field, wall_mm, min_feature_mm)
     return Depths(coarse, field)
 
 
-def _fine_field(surface: Surface, coarse: DepthField, wall_mm: float) -> DepthField | None:
+def _fine_field(
+    surface: Surface, coarse: DepthField, wall_mm: float, cell_mm: float
+) -> DepthField | None:
     """The field fine enough for the wall, over the block that holds everything deeper than it."""
     pitch = coarse.grid.pitch_mm
     maybe = coarse.depth_mm > wall_mm - pitch
@@ -78,7 +87,7 @@ def _fine_field(surface: Surface, coarse: DepthField, wall_mm: float) -> DepthFi
     block = block_around(maybe, margin=1)
     field = DepthField(cropped(coarse.grid, block), coarse.depth_mm[block])
     longest = max(coarse.grid.shape) * pitch
-    target = max(wall_mm / CELLS_PER_WALL, longest / MOST_FINE_CELLS)
+    target = max(cell_mm, longest / MOST_FINE_CELLS)
     for factor in _factors(pitch / target):
         field = refine(surface, field, factor, wall_mm)
     return field if bool((field.depth_mm > wall_mm).any()) else None
