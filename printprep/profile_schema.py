@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
@@ -128,6 +129,22 @@ class Profile(_Frozen):
         if drain.count and drain.diameter_mm is None:
             raise _impossible("drain.diameter_mm", "is needed where drain.count is above 0")
         return self
+
+    @property
+    def object_settings(self) -> Mapping[str, str]:
+        """What a 3MF carries for the slicer: the profile's own keys, and walls all of perimeters.
+
+        Where the perimeters of both faces leave a gap, the slicer fills it with infill that
+        overlaps them by a quarter of a line, and a wall of 2.0 to 2.4 mm prints 5 % too heavy.
+        Two perimeters, the slicers' default, close a wall four lines thick.
+        """
+        keys = dict(self.slicer.object_settings)
+        width_mm = self.printer.line_width_mm
+        if self.process == "fdm" and width_mm is not None:
+            perimeters = math.ceil(self.wall_mm / (2 * width_mm) - 1e-6)
+            if perimeters > 2:
+                keys.setdefault("perimeters", str(perimeters))
+        return keys
 
 
 def _impossible(key: str, fact: str) -> PydanticCustomError:

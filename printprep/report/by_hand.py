@@ -24,14 +24,15 @@ class _Words:
     """How a slicer calls things.
 
     layer, first_layer, width : its names of lengths;  keys : what stands for a PrusaSlicer setting
-    of the object, with its value;  always : what else keeps the print what was computed.
+    of the object, and for which value of it ("" for every one);  always : what else keeps the
+    print what was computed.
     """
 
     program: str
     layer: str
     first_layer: str
     width: str
-    keys: Mapping[tuple[str, str], str | None]
+    keys: Mapping[str, tuple[str, str | None]]
     always: tuple[str, ...] = field(default=())
 
 
@@ -42,9 +43,10 @@ _WORDS: Mapping[str, _Words] = {
         "First (initial) layer height",
         "Line width",
         {
-            ("fill_density", "100%"): "Sparse infill density 100 %",
-            ("fill_pattern", "rectilinear"): "Sparse infill pattern Rectilinear",
-            ("support_material_buildplate_only", "1"): "Support: On build plate only",
+            "fill_density": ("100%", "Sparse infill density 100 %"),
+            "fill_pattern": ("rectilinear", "Sparse infill pattern Rectilinear"),
+            "support_material_buildplate_only": ("1", "Support: On build plate only"),
+            "perimeters": ("", "Wall loops {}"),
         },
         ("Elephant foot compensation 0 mm", "Slicing mode Regular"),
     ),
@@ -54,9 +56,10 @@ _WORDS: Mapping[str, _Words] = {
         "Initial Layer Height",
         "Line Width",
         {
-            ("fill_density", "100%"): "Infill Density 100 %",
-            ("fill_pattern", "rectilinear"): None,  # at 100 % it is all skin
-            ("support_material_buildplate_only", "1"): "Support Placement: Touching Buildplate",
+            "fill_density": ("100%", "Infill Density 100 %"),
+            "fill_pattern": ("rectilinear", None),  # at 100 % it is all skin
+            "support_material_buildplate_only": ("1", "Support Placement: Touching Buildplate"),
+            "perimeters": ("", "Wall Line Count {}"),
         },
         ("Initial Layer Horizontal Expansion 0 mm", "Remove All Holes off"),
     ),
@@ -66,9 +69,10 @@ _WORDS: Mapping[str, _Words] = {
         "first layer's height",
         "line width",
         {
-            ("fill_density", "100%"): "infill 100 %",
-            ("fill_pattern", "rectilinear"): "infill of straight lines",
-            ("support_material_buildplate_only", "1"): "supports from the build plate only",
+            "fill_density": ("100%", "infill 100 %"),
+            "fill_pattern": ("rectilinear", "infill of straight lines"),
+            "support_material_buildplate_only": ("1", "supports from the build plate only"),
+            "perimeters": ("", "{} perimeters"),
         },
         ("nothing that shrinks the first layer", "nothing that closes holes"),
     ),
@@ -96,8 +100,10 @@ def _settings(profile: Profile, words: _Words) -> Iterator[str]:
     yield f"{words.first_layer} {printer.first_layer_mm:g} mm"
     if printer.line_width_mm is not None:
         yield f"{words.width} {printer.line_width_mm:g} mm"
-    for key, value in profile.slicer.object_settings.items():
-        said = words.keys.get((key, value), f"{key}={value} (in PrusaSlicer's words)")
-        if said is not None:
-            yield said
+    for key, value in profile.object_settings.items():
+        known, said = words.keys.get(key, (None, None))
+        if known not in ("", value):
+            yield f"{key}={value} (in PrusaSlicer's words)"
+        elif said is not None:
+            yield said.format(value)
     yield from words.always

@@ -87,11 +87,9 @@ def format_findings(
     if slicer != "prusa":
         return (_set_by_hand(profile, slicer),)
     suffix = path.suffix.lower()
-    if suffix == ".3mf" or not profile.slicer.object_settings:
+    if suffix == ".3mf" or not profile.object_settings:
         return ()
-    settings = ", ".join(
-        f"{key}={value}" for key, value in sorted(profile.slicer.object_settings.items())
-    )
+    settings = ", ".join(f"{key}={value}" for key, value in sorted(profile.object_settings.items()))
     return (
         Finding(
             "no-settings",
@@ -133,7 +131,7 @@ def _as_3mf(result: HollowResult, manifold: Manifold, *, plain: bool) -> bytes:
         item = Item(
             name=name,
             volumes=[Volume(name, vertices, faces)],
-            settings=result.profile.slicer.object_settings,
+            settings=result.profile.object_settings,
             translation_mm=(width / 2, depth / 2, 0.0 - float(vertices[:, 2].min())),
         )
     return write_3mf(

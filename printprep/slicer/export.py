@@ -61,7 +61,7 @@ def profile_settings(profile: Profile) -> dict[str, str]:
         "filament_density": f"{profile.material.density_g_cm3:g}",
         "filament_diameter": f"{FILAMENT_DIAMETER_MM:g}",
         "extrusion_multiplier": "1",
-        **profile.slicer.object_settings,
+        **profile.object_settings,
     }
 
 

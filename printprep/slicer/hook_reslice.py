@@ -238,7 +238,7 @@ def _write_part(result: HollowResult, at: tuple[float, float], target: Path) -> 
     item = Item(
         name=result.part.name,
         volumes=[Volume(result.part.name, vertices, faces)],
-        settings=result.profile.slicer.object_settings,
+        settings=result.profile.object_settings,
         translation_mm=(float(x), float(y), z),
     )
     figures = {JSON_PART: to_text(embedded_json(result)).encode("ascii")}

@@ -65,6 +65,22 @@ def test_the_default_is_what_the_documents_promise() -> None:
     }
 
 
+@pytest.mark.parametrize(
+    ("wall_mm", "perimeters"), [(1.2, None), (1.8, None), (2.0, "3"), (2.7, "3"), (3.0, "4")]
+)
+def test_thick_walls_are_all_perimeters(wall_mm: float, perimeters: str | None) -> None:
+    profile = load_profile("fdm-pla-0.4", {"wall_mm": wall_mm})
+    assert profile.object_settings.get("perimeters") == perimeters
+    rest = {key: value for key, value in profile.object_settings.items() if key != "perimeters"}
+    assert rest == profile.slicer.object_settings
+    own = {"wall_mm": wall_mm, "slicer.object_settings.perimeters": "7"}
+    assert load_profile("fdm-pla-0.4", own).object_settings["perimeters"] == "7"
+
+
+def test_powder_has_no_perimeters() -> None:
+    assert load_profile("sls-pa12", {"wall_mm": 5.0}).object_settings == {}
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_figure_has_its_source_beside_it(name: str) -> None:
     """Each line that sets a number carries a comment; first_layer follows from layer_height."""

@@ -158,6 +158,7 @@ def test_a_setting_without_a_name_of_the_slicers_own_is_said_in_prusaslicers():
         "fdm-pla-0.4",
         {
             "printer.layer_height_mm": 0.3,
+            "wall_mm": 2.4,
             "slicer.object_settings.fill_density": "40%",
             "slicer.object_settings.support_material_buildplate_only": "0",
         },
@@ -165,6 +166,7 @@ def test_a_setting_without_a_name_of_the_slicers_own_is_said_in_prusaslicers():
     (finding,) = format_findings(profile, Path("part.3mf"), "orca")
     assert "fill_density=40% (in PrusaSlicer's words)" in finding.message
     assert "Layer height 0.3 mm" in finding.message
+    assert "Wall loops 3;" in finding.message
     assert "On build plate only" not in finding.message
     with pytest.raises(UsageError, match="is for resin"):
         check_slicer(load_profile("resin-standard"), "orca")
