@@ -2,7 +2,8 @@
 
 Followed as the firmware follows them: absolute and relative axes (G90, G91) and filament (M82,
 M83; G91 makes the filament relative too, as PrusaSlicer reads it), new origins (G92: the head stays
-where it is), and arcs (G2, G3) by centre or by radius.
+where it is), and arcs (G2, G3) by radius or by centre, which is relative (G91.1) unless G90.1 says
+otherwise.
 """
 
 from __future__ import annotations
@@ -73,7 +74,13 @@ class Walker:
         across = (start[:, :2] != end[:, :2]).any(axis=1) | arc
         kept = np.flatnonzero((filament > 0) & across)
         made = Stretches(start[kept], end[kept], filament[kept], state_of_row[kept])
-        return _straightened(made, rows.kind[kept], words[kept]) if arc[kept].any() else made
+        if not arc[kept].any():
+            return made
+        placed = np.array([state.absolute_centre for state in states])[state_of_row][kept]
+        words, before = words[kept], before[kept]
+        words[placed, I] -= before[placed, X]  # both as the file counts
+        words[placed, J] -= before[placed, Y]
+        return _straightened(made, rows.kind[kept], words)
 
     def _in_mm(self, rows: Rows, state_of_row: Int, states: Sequence[State]) -> Float:
         words = rows.words.copy()

@@ -28,6 +28,7 @@ _OBJECT = re.compile(
 _OBJECTS_MAX = 1000
 _NUMBER = re.compile(rb"[-+]?\d*\.?\d+")
 _CODE = re.compile(rb"([GMT])0*(\d+)(?![\d.])", re.IGNORECASE)
+_CENTRE = re.compile(rb"G0*9([01])\.1(?!\d)", re.IGNORECASE)
 _VOLUMETRIC = re.compile(rb"[DS]\s*([\d.]+)", re.IGNORECASE)
 
 
@@ -36,11 +37,13 @@ class State:
     """What the moves that follow mean.
 
     unit_mm : mm per unit of the file;  relative, relative_e : axes and filament count from where
-    they are;  volumetric : E is mm³, not mm;  width_mm, height_mm : NaN where nothing says them.
+    they are;  absolute_centre : I and J are a place, not a way from the start of the arc;
+    volumetric : E is mm³, not mm;  width_mm, height_mm : NaN where nothing says them.
     """
 
     relative: bool = False
     relative_e: bool = False
+    absolute_centre: bool = False
     unit_mm: float = 1.0
     volumetric: bool = False
     tool: int = 0
@@ -96,7 +99,8 @@ class Listener:
         self._object(line)
         found = _CODE.match(line)
         if found is None:
-            return False
+            centre = _CENTRE.match(line)
+            return centre is not None and self._become(absolute_centre=centre[1] == b"0")
         return self._code(found[1].upper(), int(found[2]), line[found.end() :].split(b";")[0])
 
     def _comment(self, line: bytes) -> bool:

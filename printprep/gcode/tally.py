@@ -52,6 +52,7 @@ class Tally:
         self._walker = Walker()
         self._heights = Heights(listener)
         self._line = 1
+        self._motion = -1
         self._keys: dict[Key, int] = {}
         self._sums = np.zeros((0, COLUMNS))
         self._inside = np.zeros(0)
@@ -62,8 +63,9 @@ class Tally:
 
     def add(self, piece: bytes) -> None:
         """Take in the next piece, which ends with a line's end."""
-        rows = read_rows(piece, self._name, self._line)
+        rows = read_rows(piece, self._name, self._line, self._motion)
         self._line += rows.lines
+        self._motion = rows.motion
         states, changed_at, became = self._listener.hear_all(rows.others)
         changes = np.searchsorted(np.array(changed_at, dtype=np.int64), rows.line)
         state_of_row = np.array([0, *became], dtype=np.int64)[changes]

@@ -1,8 +1,9 @@
 """G-code text as arrays: the lines that move something, taken apart without a loop over lines.
 
 Notation of the arrays: n rows (lines with G0–G3, G28 or G92), in the order of the file; words of a
-row in the columns of ``WORDS``, NaN where the row has none.  Every other line that is not empty is
-left to :mod:`printprep.gcode.state`, one by one: there are few.
+row in the columns of ``WORDS``, NaN where the row has none.  A line that begins with one of these
+words moves as the line before it did.  Line numbers (N) are passed over.  Every other line that is
+not empty is left to :mod:`printprep.gcode.state`, one by one: there are few.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class Rows:
     line : (n,) int64, which line of the piece;  kind : (n,) int64: 0–3, 28 or 92;
     words : (n, 7) float64 in the units of the file, columns as ``WORDS``;
     others : (line of the piece, text) of the lines that hold something else, in order;
-    lines : how many lines the piece has.
+    lines : how many lines the piece has;  motion : the last of G0–G3 so far, −1 before any.
     """
 
     line: Int
@@ -52,26 +53,29 @@ class Rows:
     words: Float
     others: tuple[tuple[int, bytes], ...]
     lines: int
+    motion: int
 
 
-def read_rows(text: bytes, where: str, first_line: int) -> Rows:
+def read_rows(text: bytes, where: str, first_line: int, motion: int = -1) -> Rows:
     """Take a piece of G-code apart; it must end with a line's end.
 
-    where : what to call the file;  first_line : number of the piece's first line, for errors.
+    where : what to call the file;  first_line : number of the piece's first line, for errors;
+    motion : the last of G0–G3 before the piece.
 
     Raises InputError for a number that is none.
     """
     data = np.frombuffer(text + bytes(_BEYOND), dtype=np.uint8)
     ends = np.flatnonzero(data[: len(text)] == ord("\n"))
     starts = np.concatenate([[0], ends[:-1] + 1]) if len(ends) else ends
-    starts = _after_blanks(data, starts)
-    kind = _kinds(data, starts)
+    starts = _after_number(data, _after_blanks(data, starts))
+    kind, bare, motion = _as_before(data, starts, _kinds(data, starts), motion)
     moving = np.flatnonzero(kind >= 0)
     code_ends = ends.copy()
     for mark in b";(*":  # comments, and checksums as hosts append them
         _cut(data, mark, starts, code_ends)
     span = starts[moving], code_ends[moving]
-    words = _words(data, *span, kind[moving], where, first_line + moving)
+    begin = span[0] + ~bare[moving]  # behind the G, where there is one
+    words = _words(data, *span, begin, kind[moving], where, first_line + moving)
     words[kind[moving] == HOME] = np.nan  # its words only name axes
     rest = np.flatnonzero((kind < 0) & (starts < ends))
     others = tuple(
@@ -80,7 +84,7 @@ def read_rows(text: bytes, where: str, first_line: int) -> Rows:
             rest.tolist(), starts[rest].tolist(), ends[rest].tolist(), strict=True
         )
     )
-    return Rows(moving, kind[moving], words, others, len(ends))
+    return Rows(moving, kind[moving], words, others, len(ends), motion)
 
 
 def _after_blanks(data: Bytes, at: Int) -> Int:
@@ -89,6 +93,28 @@ def _after_blanks(data: Bytes, at: Int) -> Int:
         at = at + blank
         blank = (data[at] == ord(" ")) | (data[at] == ord("\t"))
     return at
+
+
+def _after_number(data: Bytes, at: Int) -> Int:
+    """Behind the line number, N and digits, of the lines that have one."""
+    numbered = ((data[at] == ord("N")) | (data[at] == ord("n"))) & _digit(data[at + 1])
+    if not numbered.any():
+        return at
+    behind = at + numbered
+    while (running := numbered & _digit(data[behind])).any():
+        behind = behind + running
+    return np.where(numbered, _after_blanks(data, behind), at)
+
+
+def _as_before(data: Bytes, starts: Int, kind: Int, motion: int) -> tuple[Int, Bool, int]:
+    """The kinds with lines of words alone as moves, which those are, and the last move's kind."""
+    moves = (kind >= 0) & (kind <= 3)
+    word = (_COLUMN[data[starts]] >= 0) & _NUMBER[data[_after_blanks(data, starts + 1)]]
+    at = np.where(moves, np.arange(len(kind)), -1)
+    last = np.maximum.accumulate(at) if len(at) else at
+    current = np.where(last >= 0, kind[last], motion)
+    bare = (kind < 0) & word & (current >= 0)
+    return np.where(bare, current, kind), bare, int(current[-1]) if len(current) else motion
 
 
 def _kinds(data: Bytes, starts: Int) -> Int:
@@ -122,14 +148,16 @@ def _cut(data: Bytes, mark: int, starts: Int, code_ends: Int) -> None:
         np.minimum.at(code_ends, line, at)
 
 
-def _words(data: Bytes, starts: Int, ends: Int, kind: Int, where: str, numbers: Int) -> Float:
-    """(n, 7) float64: the words of the rows that span starts … ends."""
+def _words(
+    data: Bytes, starts: Int, ends: Int, begin: Int, kind: Int, where: str, numbers: Int
+) -> Float:
+    """(n, 7) float64: the words of the rows that span starts … ends and hold them from begin on."""
     words = np.full((len(starts), len(WORDS)), np.nan)
     if not len(starts):
         return words
     edge = np.zeros(len(data) + 1, dtype=np.int8)
-    edge[starts + 1] += 1  # behind the G
-    edge[np.maximum(ends, starts + 1)] -= 1
+    edge[begin] += 1
+    edge[np.maximum(ends, begin)] -= 1
     active = np.cumsum(edge[:-1], dtype=np.int8).astype(bool)
     at = np.flatnonzero(active & (_COLUMN[data] >= 0))
     row = np.searchsorted(starts, at, side="right") - 1

@@ -62,10 +62,10 @@ FLAVOURS = {
     "BambuStudio": {
         "label": "; FEATURE: Outer wall",
         "width": "; LINE_WIDTH: {:g}",
-        "height": "; LAYER_HEIGHT: {:g}",
+        "height": "; Z_HEIGHT: 0.2\n; LAYER_HEIGHT: {:g}",
     },
     "SuperSlicer": {"label": ";TYPE:Internal bridge infill"},
-    "Cura": {"label": ";TYPE:WALL-OUTER", "width": "", "height": ""},
+    "Cura": {"label": ";LAYER:0\n;MESH:a.stl\n;TYPE:WALL-OUTER", "width": "", "height": ""},
     "nobody": {"label": ";nothing", "width": "", "height": ""},
 }
 
@@ -93,6 +93,11 @@ def test_other_ways_to_write_the_same(measured):
         for line in beads().splitlines()
     ]
     is_the_cuboid(measured("\n".join(sent) + "\n" + FILAMENT))
+    numbered = [
+        line if line.startswith(";") else f"N{n} {line.split(' ;')[0]}*{n % 256}"
+        for n, line in enumerate(beads().splitlines())
+    ]
+    is_the_cuboid(measured("\n".join(numbered) + "\n" + FILAMENT))
     lower = "\n".join(
         line if line.startswith(";") else line.lower() for line in beads().splitlines()
     )
@@ -195,6 +200,61 @@ def test_arcs(measured, clockwise: bool, by: str):
     assert np.linalg.norm(printed.contact_polygon_mm - 100, axis=1).max() == pytest.approx(
         20.25, abs=0.03
     )
+
+
+@pytest.mark.parametrize("piece", [97, 1 << 22])
+def test_lines_of_words_alone_move_as_the_line_before(measured, monkeypatch, piece: int):
+    monkeypatch.setattr(measuring, "_PIECE_BYTES", piece)
+    lines, moved = [], False
+    for line in beads().splitlines():
+        lines.append(line[3:] if moved and line.startswith("G1 ") else line)
+        moved = moved or line.startswith("G1 ")
+    text = "\n".join(lines) + "\n" + FILAMENT
+    assert text.count("G1 ") == 1 and text.count("\nX") > 3000
+    is_the_cuboid(measured(text))
+    # What only looks like it is no move: a macro's name, and words before any move
+    macros = "X5 E9\n" + text.replace("\nZ", "\nEXCLUDE X1 E9\nXMACRO E9\nZ")
+    is_the_cuboid(measured(macros))
+
+
+def test_the_mode_of_an_arc_is_kept_too(measured):
+    """A ring as four quarters, of which only the first says G3."""
+    per_quarter = math.pi * 10 * WIDTH * HEIGHT / AREA_175
+    text = ["M83", ";TYPE:Perimeter", f";WIDTH:{WIDTH}", f";HEIGHT:{HEIGHT}", "G1 X120 Y100 Z0.2"]
+    ways = ((100, 120, -20, 0), (80, 100, 0, -20), (100, 80, 20, 0), (120, 100, 0, 20))
+    for n, (x, y, i, j) in enumerate(ways):
+        code = "G3 " if n == 0 else ""
+        text.append(f"{code}X{x} Y{y} I{i} J{j} E{per_quarter:.9f}")
+    printed = measured("\n".join(text) + "\n" + FILAMENT)
+    assert printed.centre_of_mass_mm == pytest.approx((100, 100, 0.1), abs=1e-6)
+    assert printed.inertia_g_mm2[2, 2] == pytest.approx(printed.mass_g * 400, rel=2e-3)
+
+
+def test_absolute_centres_of_arcs(measured):
+    """G90.1: I and J are where the centre is, in the coordinates that G92 moved."""
+    head = "M83\n;TYPE:Perimeter\n;WIDTH:0.5\n;HEIGHT:0.2\nG1 X120 Y100 Z0.2\n"
+    relative = measured(f"{head}G3 X100 Y120 I-20 J0 E3\n" + FILAMENT)
+    for arc in (
+        "G90.1\nG3 X100 Y120 I100 J100 E3\n",
+        "G92 X20 Y0\nG90.1\nG3 X0 Y20 I0 J0 E3\n",
+        "G90.1\nG91.1\nG3 X100 Y120 I-20 J0 E3\n",
+        "G90.1\nG3 X100 Y120 J100 I100 E3\nG91.1\n",
+    ):
+        absolute = measured(head + arc + FILAMENT)
+        np.testing.assert_allclose(
+            absolute.centre_of_mass_mm, relative.centre_of_mass_mm, atol=1e-9
+        )
+        np.testing.assert_allclose(absolute.inertia_g_mm2, relative.inertia_g_mm2, atol=1e-9)
+
+
+def test_a_helix_spreads_its_material_over_its_height(measured):
+    """A turn of G2 that climbs a millimetre: its centre is half way up."""
+    text = "M83\n;TYPE:Perimeter\n;WIDTH:0.5\n;HEIGHT:0.2\nG1 X120 Y100 Z0.2\nG2 Z1.2 I-20 E50\n"
+    printed = measured(text + FILAMENT)
+    x, y, z = printed.centre_of_mass_mm
+    assert (x, y) == pytest.approx((100, 100), abs=1e-6)
+    assert printed.bounds_mm[1, 2] == pytest.approx(1.2)
+    assert z + printed.bounds_mm[0, 2] == pytest.approx(0.7 - 0.1, abs=0.02)
 
 
 def test_a_large_arc_by_negative_radius(measured):
