@@ -2,7 +2,8 @@
 
     python benchmarks/gcode_reader.py [--megabytes 100]
 
-The file is a cuboid of short beads as PrusaSlicer writes them; what is measured must be it, to the digits of E.
+The file is a cuboid of short beads as PrusaSlicer writes them; what is measured must be it, to
+the digits of E.
 """
 
 from __future__ import annotations
