@@ -9,7 +9,8 @@ the material is shrinking the void, so the outside need not be looked at:
 
 An island is a piece of M, enclosed by V, with no material at all under it.
 
-Nearly all layers are acquitted without opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋,
+Only around suspects (suspects.py) is anything sliced, and most of their layers are acquitted without
+opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋,
 so what is flagged lies in the suspect (V₋ ⊖ off) − (V ⊖ c), which is empty wherever
 tan θ ≤ (off − c) / h.  Most of the others are by (V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.
 The rest is looked at exactly, around the suspects only.
@@ -18,6 +19,7 @@ The rest is looked at exactly, around the suspects only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,9 +33,10 @@ from printprep.overhang.polygons import (
     regions,
     windows,
 )
+from printprep.overhang.suspects import Suspects
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from manifold3d import CrossSection, Manifold
 
@@ -43,7 +46,7 @@ if TYPE_CHECKING:
 # Slices are simplified by this much: a hundredth of what decides.
 SIMPLIFY_MM = 0.002
 # So much around a suspect is looked at too; off, the opening and its arcs reach less far.
-AROUND_MM = 1.5
+AROUND_MM = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,30 +88,52 @@ class Unsupported:
 def unsupported_ceilings(
     cavity: Manifold,
     rule: Acceptance,
-    phase: float = 0.0,
-    between_mm: tuple[float, float] = (-np.inf, np.inf),
+    phases: Sequence[float] = (0.0,),
+    suspects: Suspects | None = None,
 ) -> Unsupported:
     """What the ceilings of a cavity, and pieces that begin inside it, would need as support.
 
     Parameters
     ----------
     cavity : the void, in printing position; material all around it thicker than ``rule.off_mm``.
-    phase : layers are cut this share of a layer higher: another first layer, a raft.
-    between_mm : only layers whose undersides lie between these heights are judged.
+    phases : layers are cut these shares of a layer higher: another first layer, a raft.
+    suspects : judge there only;  None for all that may be flagged.
     """
-    patches: list[Flagged] = []
-    below: CrossSection | None = None
-    low, high = between_mm
-    for middle, bottom in _layers(cavity, rule, phase):
-        if bottom > high:
-            break
-        if middle + rule.layer_mm < low:
+    if suspects is None:
+        suspects = Suspects.of(cavity, rule)
+    if not len(suspects):
+        return Unsupported(())
+    # Where the window ends above, ceilings are flagged that are none: too far to touch a suspect.
+    around = np.array([AROUND_MM, AROUND_MM, 2 * rule.layer_mm])
+    void = cavity ^ suspects.window(around)
+    return Unsupported(tuple(p for phase in phases for p in _judged(void, rule, phase, suspects)))
+
+
+def _judged(
+    void: Manifold, rule: Acceptance, phase: float, suspects: Suspects
+) -> Iterator[Flagged]:
+    """Patches of all layers that touch a suspect."""
+    cut: tuple[float, CrossSection] | None = None
+    for (under, _), (middle, bottom) in pairwise(_layers(void, rule, phase)):
+        near = (suspects.low_mm[:, 2] <= middle) & (suspects.high_mm[:, 2] >= under)
+        if not near.any():
             continue
-        here = cavity.slice(middle).simplify(SIMPLIFY_MM)
-        if below is not None and not below.is_empty():
-            patches.extend(_ceilings(here, below, bottom, rule))
-        below = here
-    return Unsupported(tuple(patches))
+        low, high = suspects.low_mm[near, :2], suspects.high_mm[near, :2]
+        below = cut[1] if cut and cut[0] == under else void.slice(under).simplify(SIMPLIFY_MM)
+        here = void.slice(middle).simplify(SIMPLIFY_MM)
+        cut = middle, here
+        if not below.is_empty():
+            for patch in _ceilings(here, below, bottom, rule):
+                if _touches(patch, low - rule.off_mm, high + rule.off_mm):
+                    yield patch
+
+
+def _touches(patch: Flagged, low: Float, high: Float) -> bool:
+    """Whether a patch meets any of the boxes (n, 2)."""
+    outline = np.concatenate(patch.outline_mm)
+    met = (outline.min(axis=0) <= high).all(axis=1) & (outline.max(axis=0) >= low).all(axis=1)
+    boxes = [np.stack([a, b]) for a, b in zip(low[met], high[met], strict=True)]
+    return bool(boxes) and not (regions(patch.outline_mm) ^ windows(boxes, 0.0)).is_empty()
 
 
 def unsupported_overhangs(part: Manifold, rule: Acceptance, phase: float = 0.0) -> Unsupported:

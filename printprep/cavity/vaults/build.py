@@ -17,10 +17,11 @@ from printprep.cavity.vaults.forest import Forest
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members, built_for
 from printprep.cavity.vaults.mend import mending
-from printprep.cavity.vaults.solids import Frustum, columns, funnels
+from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
 from printprep.overhang.limits import Acceptance
-from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
+from printprep.overhang.rule import Unsupported, unsupported_ceilings
+from printprep.overhang.suspects import Suspects
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,15 +83,13 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
         set_feet(forest, dexels, members)
     pieces = funnels(capitals, members) + columns(forest, members)
     cavity = _without(room, pieces, members)
-    flagged = _flagged(cavity, rule, (-np.inf, np.inf))
+    flagged = list(unsupported_ceilings(cavity, rule, PHASES).patches)
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
         more = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
         cavity = _without(cavity, more, members)
-        low = min(float(piece.low[2]) for piece in more) - rule.layer_mm
-        high = max(float(piece.high[2]) for piece in more) + 2 * rule.layer_mm
-        flagged = _flagged(cavity, rule, (low, high))
+        flagged = list(_around(more, cavity, rule).patches)
         pieces += more
     left = Unsupported(tuple(flagged))
     widening = sum(piece.high_radius_mm > piece.low_radius_mm for piece in pieces)
@@ -119,17 +118,17 @@ def _slope_deg(rule: Acceptance) -> float:
 
 def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:
     """The room less what is built in it and what is then too small to keep."""
-    from manifold3d import Manifold, OpType
-
     if pieces:
-        room = room - Manifold.batch_boolean([piece.solid() for piece in pieces], OpType.Add)
+        room = room - united(pieces)
     return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
 
 
-def _flagged(cavity: Manifold, rule: Acceptance, between_mm: tuple[float, float]) -> list[Flagged]:
-    """Patches at every phase, between two heights."""
-    found = (unsupported_ceilings(cavity, rule, phase, between_mm) for phase in PHASES)
-    return [patch for every in found for patch in every.patches]
+def _around(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:
+    """What the rule flags where pieces were just built: elsewhere nothing changed."""
+    low, high = (np.array(ends) for ends in zip(*(piece.bounds() for piece in pieces), strict=True))
+    beyond = np.array([rule.off_mm, rule.off_mm, rule.layer_mm])
+    suspects = Suspects.of(cavity, rule).near(low - beyond, high + beyond)
+    return unsupported_ceilings(cavity, rule, PHASES, suspects)
 
 
 def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:

@@ -11,7 +11,6 @@ others fill already.  (Without that charge for overlap the result is 2.5 times a
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -31,6 +30,8 @@ LOWERED_MM = (0.0, 0.4, 0.9, 1.4, 2.0, 2.8, 3.6)
 REACH_MM = 3.6
 RISE_MM = 5.0
 TIGHTENINGS = 3
+# Candidates valued together.
+_TOGETHER = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,38 +107,48 @@ def _pairs(nodes: Float, samples: Float, members: Members) -> _Pairs:
 def _greedy(pairs: _Pairs, count: int, area_mm2: float) -> Int:
     """Indices of candidates whose samples are all samples that any candidate carries.
 
-    Values only wait in the heap: each is computed again before it is believed.
+    A value only falls while others are chosen, so an old one bounds it: those of the highest bounds
+    are valued anew, together, until the best of them beats all other bounds.
     """
-    missing = np.ones(count)
-    filled = np.zeros(count)
-    start = pairs.start
+    missing, filled = np.ones(count), np.zeros(count)
+    start, length = pairs.start, np.diff(pairs.start)
+    fixed = COLUMN_MM3 / area_mm2
 
-    def value(candidate: int) -> float:
-        run = slice(start[candidate], start[candidate + 1])
+    def value(candidates: Int) -> Float:
+        sizes = length[candidates]
+        first = np.cumsum(sizes) - sizes
+        run = np.arange(int(sizes.sum())) + np.repeat(start[candidates] - first, sizes)
         sample = pairs.sample[run]
-        gained = float(missing[sample].sum())
-        if gained == 0:
-            return 0.0
         more = np.maximum(pairs.thick_mm[run] - filled[sample], 0.0)
-        return gained / (COLUMN_MM3 / area_mm2 + float(more.sum()))
+        gained = np.add.reduceat(missing[sample], first)
+        result: Float = gained / (fixed + np.add.reduceat(more, first))
+        return result
 
-    total = np.add.reduceat(np.append(pairs.thick_mm, 0.0), np.minimum(start[:-1], start[-1]))
-    gains = np.diff(start) / (COLUMN_MM3 / area_mm2 + np.where(np.diff(start) > 0, total, 0.0))
-    heap = [(-gain, c) for c, gain in enumerate(gains.tolist()) if gain > 0]
-    heapq.heapify(heap)
-    chosen = []
-    while heap:
-        _, candidate = heapq.heappop(heap)
-        now = value(candidate)
-        if now <= 0:
-            continue
-        if heap and now < -heap[0][0]:
-            heapq.heappush(heap, (-now, candidate))
-            continue
-        chosen.append(candidate)
-        run = slice(start[candidate], start[candidate + 1])
-        missing[pairs.sample[run]] = 0.0
-        np.maximum.at(filled, pairs.sample[run], pairs.thick_mm[run])
+    waiting = np.flatnonzero(length > 0)
+    bound = value(waiting) if len(waiting) else np.zeros(0)
+    chosen: list[int] = []
+    while len(waiting):
+        if len(waiting) > _TOGETHER:
+            parted = np.argpartition(-bound, _TOGETHER)
+            top, rest = np.sort(parted[:_TOGETHER]), float(bound[parted[_TOGETHER]])
+        else:
+            top, rest = np.arange(len(waiting)), 0.0
+        bound[top] = value(waiting[top])
+        while True:
+            best = int(top[np.argmax(bound[top])])
+            if bound[best] <= 0 or bound[best] < rest:
+                break
+            candidate = int(waiting[best])
+            chosen.append(candidate)
+            run = slice(start[candidate], start[candidate + 1])
+            missing[pairs.sample[run]] = 0.0
+            np.maximum.at(filled, pairs.sample[run], pairs.thick_mm[run])
+            bound[top] = value(waiting[top])
+        spent = bound[top] <= 0
+        if spent.any():
+            kept = np.ones(len(waiting), dtype=bool)
+            kept[top[spent]] = False
+            waiting, bound = waiting[kept], bound[kept]
     return np.array(chosen, dtype=np.int64)
 
 

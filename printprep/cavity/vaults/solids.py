@@ -14,6 +14,8 @@ import numpy as np
 from printprep.mesh.measure import from_arrays
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from manifold3d import Manifold
 
     from printprep.cavity.vaults.capitals import Capitals
@@ -44,13 +46,29 @@ class Frustum:
         cosine = float(way[2] / np.linalg.norm(way))
         return 2 * min(self.low_radius_mm, self.high_radius_mm) * cosine
 
-    def solid(self) -> Manifold:
-        """With regular polygons around the discs."""
+    def bounds(self) -> tuple[Float, Float]:
+        """Lower and upper corner of a box around it."""
+        wide = max(self.low_radius_mm, self.high_radius_mm) / np.cos(np.pi / SIDES)
+        ends = np.stack([self.low, self.high])
+        margin = np.array([wide, wide, 0.0])
+        return ends.min(axis=0) - margin, ends.max(axis=0) + margin
+
+    def corners(self) -> Float:
+        """(2 SIDES, 3) of regular polygons around the discs, the lower one first."""
         turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
         ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(SIDES)], axis=1)
         ring /= np.cos(np.pi / SIDES)
         lower = self.low + self.low_radius_mm * ring
-        return from_arrays(np.concatenate([lower, self.high + self.high_radius_mm * ring]), _FACES)
+        return np.concatenate([lower, self.high + self.high_radius_mm * ring])
+
+
+def united(pieces: Sequence[Frustum]) -> Manifold:
+    """All pieces as one solid."""
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(
+        [from_arrays(piece.corners(), _FACES) for piece in pieces], OpType.Add
+    )
 
 
 def funnels(capitals: Capitals, members: Members) -> list[Frustum]:
