@@ -58,7 +58,7 @@ def main() -> int:
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", help="file stems, all without")
     parser.add_argument("--no-slice", action="store_true")
-    parser.add_argument("--self-support", action="store_true", help="with vaults inside")
+    parser.add_argument("--no-self-support", action="store_true", help="no vaults inside")
     parser.add_argument("--json", type=Path, help="the rows as JSON too")
     arguments = parser.parse_args()
     rows = []
@@ -69,7 +69,7 @@ def main() -> int:
             arguments.size,
             arguments.profile,
             slice_it=not arguments.no_slice,
-            vaults=arguments.self_support,
+            vaults=not arguments.no_self_support,
         )
         rows.append(row)
         sys.stderr.write(json.dumps(row) + "\n")
@@ -88,14 +88,14 @@ def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
 
 
 def measure(
-    model: Path, up: str, size_mm: float, profile: str, *, slice_it: bool, vaults: bool = False
+    model: Path, up: str, size_mm: float, profile: str, *, slice_it: bool, vaults: bool = True
 ) -> dict[str, Any]:
     """One row of the table."""
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
         command = [sys.executable, "-m", "printprep", "hollow", str(model), "-o", str(part)]
         command += ["--up", up, "--size", str(size_mm), "--profile", profile, "--json"]
-        command += ["--self-support"] if vaults else []
+        command += [] if vaults else ["--no-self-support"]
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
         row: dict[str, Any] = {"model": model.stem, "exit": ran.returncode, "stderr": ran.stderr}
         if ran.returncode != 0:

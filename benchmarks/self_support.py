@@ -109,7 +109,7 @@ def measure(
     written = as_written(solid - vaults.cavity)
     rule = acceptance(profile)
     found = [
-        [unsupported_ceilings(void, rule, phase) for void in shells(written)[1]]
+        [unsupported_ceilings(void, rule, (phase,)) for void in shells(written)[1]]
         for phase in JUDGED_PHASES
     ]
     row["flagged_mm2"] = max(sum(item.area_mm2 for item in phase) for phase in found)

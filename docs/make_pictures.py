@@ -16,7 +16,7 @@ SIZE = 400
 
 
 def main() -> None:
-    result = printprep.hollow(HERE.parent / "samples" / "spot.stl", self_support=True)
+    result = printprep.hollow(HERE.parent / "samples" / "spot.stl")
     pictures = HERE / "pictures"
     pictures.mkdir(exist_ok=True)
     # The thumbnail's eye looks from the front right; the cut face is turned toward it.

@@ -64,6 +64,7 @@ def explore(
     size_mm: float | None = None,
     resolution: int = 64,
     base: BasePolicy = "auto",
+    self_support: bool | None = None,
     count: int = 13,
     progress: Progress = SILENT,
 ) -> Exploration:
@@ -76,6 +77,7 @@ def explore(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
+    from printprep.cavity.supports import supported, supports_wanted
     from printprep.cavity.surface import cavity_surface
     from printprep.density.outcome import paper_density
     from printprep.density.program import Program
@@ -92,6 +94,7 @@ def explore(
     if not 2 <= count <= 200:
         raise UsageError(f"A curve of {count} points is not between 2 and 200.")
     settings = load_profile(profile, {**(overrides or {}), "stability.lean_margin_deg": 0.0})
+    carried = supports_wanted(self_support, settings)
     with progress.stage("read"):
         placed = placed_model(model, units, up, scale, height_mm, size_mm)
     with progress.stage("repair"):
@@ -108,6 +111,9 @@ def explore(
     first_layer = settings.printer.first_layer_mm
     with progress.stage("cavity"):
         room = cavity_surface(solid.manifold, depths.field, settings.wall_mm)
+    if carried and not room.is_empty():
+        with progress.stage("supports"):
+            room, _ = supported(room, settings)
     program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
     with progress.stage("solve"):
         farthest = program.choose(base, Lean(MOST_DEG))

@@ -13,7 +13,6 @@ from printprep.types import Advice, HollowResult, Lean
 
 if TYPE_CHECKING:
     import trimesh
-    from manifold3d import Manifold
 
     from printprep.density.outcome import PaperSolver
     from printprep.density.program import BasePolicy
@@ -41,7 +40,7 @@ def hollow(
     solver: PaperSolver = "plane",
     device: str = "cpu",
     base: BasePolicy = "auto",
-    self_support: bool = False,
+    self_support: bool | None = None,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
     fill: Fill = "cavity",
@@ -64,7 +63,7 @@ def hollow(
     solver : of the paper's objective: "plane", exact, or "adam", as the paper descends, on a torch
         ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet.
-    self_support : carry the cavities' ceilings from inside, where the process needs it (fdm).
+    self_support : carry the cavities' ceilings from inside; None: where the process needs it (fdm).
     drains : holes in each cavity, at least, 0 for none;  drain_diameter_mm : how wide; None takes
         the profile's.
     fill : "cavity", or "infill": the profile's sparse infill, and dense ballast where it must weigh
@@ -76,6 +75,7 @@ def hollow(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
+    from printprep.cavity.supports import supported, supports_wanted
     from printprep.cavity.surface import cavity_surface
     from printprep.check import Subject, run_rules
     from printprep.density.program import Program
@@ -93,9 +93,10 @@ def hollow(
 
     settings = load_profile(profile, {**(overrides or {}), **drain_keys(drains, drain_diameter_mm)})
     asked = lean_of(lean, settings.stability.lean_deg)
+    carried = supports_wanted(self_support, settings)
     _check_resolution(resolution)
     _check_solver(objective, solver, device)
-    check_fill(fill, settings, objective=objective, self_support=self_support, slicer=slicer)
+    check_fill(fill, settings, objective=objective, self_support=bool(self_support), slicer=slicer)
     clock = Stopwatch(progress)
     with clock.stage("read"):
         placed = placed_model(model, units, up, scale, height_mm, size_mm)
@@ -125,9 +126,9 @@ def hollow(
     with clock.stage("cavity"):
         room = cavity_surface(solid.manifold, depths.field, settings.wall_mm)
     supports = None
-    if self_support and settings.process == "fdm" and not room.is_empty():
+    if carried and not room.is_empty():
         with clock.stage("supports"):
-            room, supports = _supported(room, settings)
+            room, supports = supported(room, settings)
         settings = _with_free_supports(settings, supports)
     with clock.stage("base"):
         program = Program(solid.manifold, weigh_interior(solid, depths, room), settings)
@@ -228,21 +229,6 @@ def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
     return (
         replace(placed, vertices=vertices, placement=placement),
         replace(solid, manifold=manifold, placement=placement),
-    )
-
-
-def _supported(room: Manifold, profile: Profile) -> tuple[Manifold, Supports]:
-    """The room with its ceilings carried, and by what."""
-    from printprep.cavity.vaults import vaulted
-    from printprep.types import Supports
-
-    vaults = vaulted(room, profile)
-    return vaults.cavity, Supports(
-        vaults.capitals,
-        vaults.columns,
-        vaults.added_mm3,
-        vaults.unsupported_mm2,
-        vaults.islands,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -32,6 +33,16 @@ def box(size: float, height: float | None = None, z: float = 0.0) -> Manifold:
 
 def hollow_box(size: float, wall: float) -> Manifold:
     return box(size) - box(size - 2 * wall, z=wall)
+
+
+def roofed(deg: float, size: float = 20.0, wall: float = 2.0) -> Manifold:
+    """A block with a cavity under a pyramid whose sides lean ``deg`` from the vertical."""
+    half = size / 2 - wall
+    rise = half / math.tan(math.radians(deg))
+    floor = [(x, y, wall) for x in (-half, half) for y in (-half, half)]
+    return box(size, wall + rise + wall) - Manifold.hull_points(
+        np.array([*floor, (0.0, 0.0, wall + rise)])
+    )
 
 
 def subject(part: Manifold, **changes: object) -> Subject:

@@ -13,6 +13,7 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     sealed_cavity,
     tilt,
     tiny_model,
+    unsupported_ceiling,
     wall_thickness,
     watertight,
 )

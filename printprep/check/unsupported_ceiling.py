@@ -39,7 +39,7 @@ def unsupported_ceiling(subject: Subject, profile: Profile) -> Iterator[Finding]
         "warning",
         f"Ceilings inside cavities overhang by {found.area_mm2:.1f} mm² over all layers{islands}; "
         "a slicer prints support there, which stays inside.",
-        "Hollow it with supports of its own inside (--self-support).",
+        "Hollow it with supports of its own inside, as `printprep hollow` does for filament.",
         value=found.area_mm2,
         limit=AREA_MM2,
         unit="mm2",

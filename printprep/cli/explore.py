@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.options import DEFAULT_PROFILE, model_argument, placement_options
+from printprep.cli.options import (
+    DEFAULT_PROFILE,
+    model_argument,
+    placement_options,
+    self_support_option,
+)
 from printprep.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
@@ -54,6 +59,7 @@ Examples:
     show_default=True,
     help="Whether feet may be seated and grown; chosen anew for every lean.",
 )
+@self_support_option
 @click.option(
     "--points",
     "count",

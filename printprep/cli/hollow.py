@@ -15,6 +15,7 @@ from printprep.cli.options import (
     overrides,
     placement_options,
     profile_options,
+    self_support_option,
 )
 from printprep.errors import UsageError
 from printprep.report.by_hand import SLICERS
@@ -104,13 +105,7 @@ Examples:
     is_flag=True,
     help="Slice the part with PrusaSlicer too, and measure the G-code, as `printprep verify` does.",
 )
-@click.option(
-    "--self-support/--no-self-support",
-    default=False,
-    show_default=True,
-    help="Carry the ceilings of cavities by vaults inside them, so that they print without "
-    "support (filament only; takes half a minute and more).",
-)
+@self_support_option
 @click.option(
     "--drains",
     "drain_count",

@@ -55,6 +55,15 @@ def placement_options(command: Command) -> Command:
     )(command)
 
 
+def self_support_option(command: Command) -> Command:
+    return click.option(
+        "--self-support/--no-self-support",
+        default=None,
+        help="Carry the ceilings of cavities by vaults inside them, so that they print without "
+        "support. Default: for filament.",
+    )(command)
+
+
 def profile_options(command: Command) -> Command:
     """Printer, material and limits, and single keys of them."""
     return _together(

@@ -9,11 +9,10 @@ the material is shrinking the void, so the outside need not be looked at:
 
 An island is a piece of M, enclosed by V, with no material at all under it.
 
-Only around suspects (suspects.py) is anything sliced, and most of their layers are acquitted without
-opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋,
-so what is flagged lies in the suspect (V₋ ⊖ off) − (V ⊖ c), which is empty wherever
-tan θ ≤ (off − c) / h.  Most of the others are by (V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.
-The rest is looked at exactly, around the suspects only.
+Only around suspects (suspects.py) is anything sliced.  Most layers there are acquitted without
+opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋, so what is flagged lies in
+(V₋ ⊖ off) − (V ⊖ c), which is empty wherever tan θ ≤ (off − c) / h.  Most others are by
+(V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.  The rest is looked at exactly, around there only.
 """
 
 from __future__ import annotations

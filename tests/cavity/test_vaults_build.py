@@ -38,7 +38,7 @@ def holds(room: Manifold, vaults: Vaults) -> None:
     assert len(solids) == 1
     assert sum(v.volume() for v in voids) == pytest.approx(vaults.cavity.volume(), rel=1e-5)
     for phase in (0.0, 0.25, 0.8):
-        written = [unsupported_ceilings(void, acceptance(PROFILE), phase) for void in voids]
+        written = [unsupported_ceilings(void, acceptance(PROFILE), (phase,)) for void in voids]
         assert sum(found.area_mm2 for found in written) < 0.05
         assert sum(found.islands for found in written) == 0
 

@@ -35,7 +35,7 @@ def test_figures_of_a_hollow_block(tmp_path, capsys, suffix):
         {"volume_mm3": 4096.0, "bounds_mm": [[-8.0, -8.0, 2.0], [8.0, 8.0, 18.0]]}
     ]
     assert data["repair"]["rung"] == "as-is"
-    assert [item["rule"] for item in data["findings"]] == ["sealed-cavity"]
+    assert [item["rule"] for item in data["findings"]] == ["unsupported-ceiling", "sealed-cavity"]
 
 
 def test_what_hollow_writes_passes(tmp_path, capsys):

@@ -63,7 +63,7 @@ def test_a_real_model_carries_its_own_ceilings(
     stem: str, dev_models: dict[str, CatalogueModel], prusa_slicer: Path
 ) -> None:
     model = dev_models[stem]
-    row = measure(model.path, model.up, 60.0, "fdm-pla-0.4", slice_it=False, vaults=True)
+    row = measure(model.path, model.up, 60.0, "fdm-pla-0.4", slice_it=False)
     assert row["exit"] == 0, row
     assert (row["lib3mf"], row["manifold"]) == ("clean", "yes")
     assert row["judged_wall_mm"] >= WALL_MM - 0.05

@@ -35,7 +35,7 @@ def chimney(deg: float, radius: float = 6.0) -> Manifold:
 
 def accepted(void: Manifold, rule: Acceptance = RULE) -> bool:
     """At every place of the layers."""
-    return all(not unsupported_ceilings(void, rule, float(p)).patches for p in PHASES)
+    return all(not unsupported_ceilings(void, rule, (float(p),)).patches for p in PHASES)
 
 
 @pytest.mark.parametrize("shape", [gable, chimney])
@@ -56,7 +56,7 @@ def test_a_gable_is_refused_by_what_the_closed_ridge_leaves():
     The layer that closes has a half width just below c, so x is at most h tan θ + c.
     """
     half = RULE.layer_mm * math.tan(math.radians(44)) + RULE.closing_mm
-    most = max(unsupported_ceilings(gable(44), RULE, float(p)).area_mm2 for p in PHASES)
+    most = max(unsupported_ceilings(gable(44), RULE, (float(p),)).area_mm2 for p in PHASES)
     bound = 2 * (half - RULE.off_mm) * 10.0
     assert 0.6 * bound < most <= bound
 
@@ -99,7 +99,7 @@ def test_a_widening_column_is_no_island():
 def test_voids_and_material_are_judged_alike(phase):
     void = Manifold.sphere(8, 64).translate((0, 0, 12)) - Manifold.cylinder(30, 1, 1, 16)
     part = box(24, 24, 24) - void
-    quick = unsupported_ceilings(void, RULE, phase)
+    quick = unsupported_ceilings(void, RULE, (phase,))
     slow = unsupported_overhangs(part, RULE, phase)
     assert quick.area_mm2 == pytest.approx(slow.area_mm2, rel=2e-3)
     assert quick.islands == slow.islands == 0
@@ -128,4 +128,4 @@ def test_nothing_is_flagged_of_nothing():
 @given(st.floats(5, 35), st.floats(0, 0.99), st.floats(0, 360))
 def test_no_roof_within_the_limit_is_flagged(deg, phase, turn):
     roof = gable(deg).rotate((0, 0, turn))
-    assert not unsupported_ceilings(roof, RULE, phase).patches
+    assert not unsupported_ceilings(roof, RULE, (phase,)).patches

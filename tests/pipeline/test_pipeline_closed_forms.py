@@ -20,7 +20,7 @@ GRAMS = 1.24 / 1000
 
 def hollowed(manifold: Manifold, **options: object) -> HollowResult:
     mesh = trimesh.Trimesh(*arrays(manifold), process=False)
-    return hollow(mesh, **{"resolution": 48, **options})  # type: ignore[arg-type]
+    return hollow(mesh, **{"resolution": 48, "self_support": False, **options})  # type: ignore[arg-type]
 
 
 def test_a_cube_becomes_a_box_with_even_walls() -> None:
@@ -209,7 +209,7 @@ def test_vaults_are_weighed_in_the_program() -> None:
     prism = solids.leaning_prism(24, 50, 14)
     options = {"base": "never", "lean": 6.0}
     plain = hollowed(prism, **options)
-    held = hollowed(prism, self_support=True, **options)
+    held = hollowed(prism, self_support=None, **options)
     assert held.supports is not None and held.supports.columns > 0
     assert held.supports.unsupported_mm2 == 0 and held.supports.islands == 0
     assert held.mass_g > plain.mass_g
@@ -220,6 +220,15 @@ def test_vaults_are_weighed_in_the_program() -> None:
     assert "support_material_buildplate_only" not in held.profile.slicer.object_settings
     assert "support_material_buildplate_only" in plain.profile.slicer.object_settings
     assert plain.supports is None
+
+
+def test_supports_go_by_the_process() -> None:
+    block = solids.box(20, 20, 20)
+    assert hollowed(block, self_support=None, resolution=24).supports is not None
+    resin = {"profile": "resin-standard", "resolution": 24}
+    assert hollowed(block, self_support=None, **resin).supports is None
+    with pytest.raises(UsageError, match="resin"):
+        hollowed(block, self_support=True, **resin)
 
 
 def test_adam_comes_to_about_what_the_plane_is() -> None:

@@ -106,4 +106,5 @@ def test_check_tells_size_mass_and_wall():
     assert data["size_mm"] == [20.0, 20.0, 20.0]
     assert (data["volume_mm3"], data["mass_g"], data["wall_min_mm"]) == (3904.0, 4.84096, 2.0)
     assert data["cavities"]["count"] == 1
-    assert [item["rule"] for item in data["findings"]] == ["sealed-cavity"]
+    found = [item["rule"] for item in data["findings"]]
+    assert found == ["unsupported-ceiling", "sealed-cavity"]

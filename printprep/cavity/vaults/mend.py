@@ -35,8 +35,8 @@ def mending(
 ) -> list[Frustum]:
     """Funnels under flagged patches, each on a column of its own.
 
-    It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick there as
-    the column it enters, so that nothing of its foot stands out.
+    It stands where that is soonest, on shell or vaults; or it leans on an axis, at least as thick
+    there as the column it enters: what stands out of its foot is less than a layer may reach.
     """
     points = np.concatenate([_points(patch, layer_mm) for patch in flagged])
     capitals = cover(points, members, SPACING_MM**2)
@@ -60,16 +60,15 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     """The column to the nearest point of an axis, where that is shorter than ``cost_mm``."""
     fall = node[2] - axes.place_mm[:, 2]
     d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
-    # It may widen upward by the difference of its lean's radius and an upright column's.
-    spare = members.leaning_radius_mm - members.radius_mm
-    reach = (d + spare <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
+    reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
     weighed = np.where(reach, fall + d**2 / np.where(reach, fall, 1.0), np.inf)
     best = int(np.argmin(weighed)) if len(weighed) else -1
     if best < 0 or weighed[best] >= cost_mm:
         return None
     slope = float(np.sqrt(weighed[best] / fall[best]))
-    radius = float(members.across_mm(axes.above_mm[best : best + 1])[0])
-    return Frustum(axes.place_mm[best], radius, node, max(radius, members.radius_mm * slope))
+    thick = members.radius_mm * slope
+    radius = max(thick, float(members.across_mm(axes.above_mm[best : best + 1])[0]))
+    return Frustum(axes.place_mm[best], radius, node, radius)
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:
