@@ -110,6 +110,6 @@ def _ticks(low: float, high: float) -> list[float]:
     """Round numbers, five to ten of them, that span low to high."""
     span = high - low
     step = 10.0 ** np.floor(np.log10(span))
-    step *= next(factor for factor in (0.1, 0.2, 0.5, 1.0) if span / (step * factor) <= 9)
+    step *= next(factor for factor in (0.1, 0.2, 0.5, 1.0, 2.0) if span / (step * factor) <= 9)
     first, last = np.floor(low / step + 1e-9), np.ceil(high / step - 1e-9)
     return [float(f"{k * step:.6g}") for k in range(int(first), int(last) + 1)]
