@@ -62,6 +62,6 @@ def examine(
         solid = repair(placed)
     with progress.stage("check"):
         standing = stability(solid.manifold, settings.printer.first_layer_mm)
-        subject = subject_of_solid(solid.manifold, standing, asked, solid.repair)
+        subject = subject_of_solid(solid.manifold, standing, asked, solid.repair, placed)
         findings = run_rules(subject, settings)
     return Examined(subject, findings, settings)

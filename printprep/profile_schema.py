@@ -96,6 +96,7 @@ class Profile(_Frozen):
     process: Literal["fdm", "resin", "powder"]
     wall_mm: float = _bounded(0.2, 50.0)
     min_feature_mm: float = _bounded(0.1, 50.0)
+    min_gap_mm: float | None = _bounded(0.01, 50.0, default=None)
     overhang_deg: float = _bounded(0.0, 90.0)
     printer: Printer
     material: Material

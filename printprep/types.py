@@ -84,7 +84,8 @@ class Finding:
     """One thing the user should know.
 
     rule : stable id of the rule;  value, limit : numbers in ``unit`` or None;
-    at_mm : where, or None;  fix : the way out, one sentence.
+    message : what is so, for the one who prints;  fix : the way out, for the one who changes it.
+    at_mm : where, or None;  area_mm2, volume_mm3 : how much of it, None where it has none.
     """
 
     rule: str
@@ -95,6 +96,8 @@ class Finding:
     limit: float | None = None
     unit: str | None = None
     at_mm: tuple[float, float, float] | None = None
+    area_mm2: float | None = None
+    volume_mm3: float | None = None
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,9 @@ _MOVED_LIMIT_MM = 0.1
 def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """Prevents a slicer from guessing what an open or tangled surface means.
 
-    On a file as it came: error where holes were closed or the surface remade, warning where only
-    overlapping shells were joined.  On a part of ours the repair is done, and worth a word only
+    On a file as it came it tells what was judged instead of it: warning where holes were closed or
+    the surface remade, information where only shells were joined or turned; what is wrong with the
+    file itself has rules of its own.  On a part of ours the repair is done, and worth a word only
     where it moved the surface by more than a layer hides.
     """
     del profile
@@ -36,8 +37,8 @@ def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
         message = f"The model had to be repaired, and {moved} ({done})."
         fix = "Look at the part before printing it, or repair the model where it was made."
     else:
-        severity = "warning" if repair.rung == "union" else "error"
-        message = f"The file is not one closed surface; making it one took: {done} ({moved})."
+        severity = "info" if repair.rung == "union" else "warning"
+        message = f"The file was judged as a solid; making it one took: {done} ({moved})."
         fix = "`printprep hollow` does the same repair and writes a sound part."
     yield Finding(
         "repaired",

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from printprep.check.walls import Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Advice, Drainage, Lean, Repair, Stability
+from printprep.types import Advice, Drainage, Lean, Model, Repair, Stability
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from manifold3d import Manifold
+
+    from printprep.mesh.pierced import Pierced
+    from printprep.pour import Cup, Pocket
+    from printprep.thickness import Thin
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +37,9 @@ class Subject:
     reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
     advice : what would make it feasible, with ``reachable_deg``.
     drainage : how it drains, None where no drains were asked for.
+    raw : a file's own triangles, as they were read and placed; None for a part of ours.
+
+    What several rules ask for is measured once.
     """
 
     part: Manifold
@@ -42,6 +53,7 @@ class Subject:
     reachable_deg: float | None = None
     advice: Advice | None = None
     drainage: Drainage | None = None
+    raw: Model | None = None
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
@@ -54,8 +66,54 @@ class Subject:
         """The thinnest wall between cavities and outside, None without a cavity; measured once."""
         return wall_min_mm(self)
 
+    @cached_property
+    def pierced(self) -> Pierced | None:
+        """Where the file's own triangles pass through each other, None where they do not."""
+        from printprep.mesh.pierced import pierced
 
-def subject_of_solid(part: Manifold, stability: Stability, lean: Lean, repair: Repair) -> Subject:
+        found = None if self.raw is None else pierced(self.raw.vertices, self.raw.faces)
+        return found if found is not None and len(found.edge) else None
+
+    def thin_below(self, limit_mm: float) -> Thin:
+        """Where its material is thinner than a limit."""
+        from printprep.thickness import thin_places
+
+        return self._kept("thin", limit_mm, lambda: thin_places(self.part, limit_mm))
+
+    def narrow_below(self, limit_mm: float) -> Thin:
+        """Where the space outside its material is narrower than a limit."""
+        from printprep.thickness import gap_places
+
+        return self._kept("narrow", limit_mm, lambda: gap_places(self.outside, limit_mm))
+
+    def pockets(self, diameter_mm: float) -> tuple[Pocket, ...]:
+        """What a ball of this diameter cannot leave."""
+        from printprep.pour import trapped
+
+        return self._kept("pockets", diameter_mm, lambda: trapped(self.part, diameter_mm))
+
+    @cached_property
+    def cups(self) -> tuple[Cup, ...]:
+        """What is shut toward the plate while it prints."""
+        from printprep.pour import suction_cups
+
+        return suction_cups(self.part)
+
+    def _kept(self, what: str, limit_mm: float, measure: Callable[[], T]) -> T:
+        key = (what, limit_mm)
+        if key not in self._measured:
+            self._measured[key] = measure()
+        kept: T = self._measured[key]
+        return kept
+
+    @cached_property
+    def _measured(self) -> dict[tuple[str, float], Any]:
+        return {}
+
+
+def subject_of_solid(
+    part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
+) -> Subject:
     """Any solid as a subject: its shells of negative volume bound cavities, the rest is outside.
 
     A loose piece inside a cavity is part of neither: it takes room from the cavity it lies in.
@@ -76,4 +134,5 @@ def subject_of_solid(part: Manifold, stability: Stability, lean: Lean, repair: R
         lean=lean,
         repair=repair,
         hollowed=False,
+        raw=raw,
     )

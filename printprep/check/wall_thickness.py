@@ -1,4 +1,4 @@
-"""Rule: no wall between a cavity and the outside is thinner than the profile's."""
+"""Rule: walls are as thick as the profile asks for, around cavities and everywhere else."""
 
 from __future__ import annotations
 
@@ -13,29 +13,60 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
 
 TOLERANCE_MM = 0.05
+# Less surface than this is an edge that was rounded off, or the tip of a fold.
+LEAST_MM2 = 5.0
+# Below this share of the profile's wall there is hardly a line of it left.
+HARDLY = 0.5
 
 
 @rule("wall-thickness")
 def wall_thickness(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """Prevents a wall that prints with holes, or breaks when the part is touched.
 
-    Measured on the finished surfaces, not assumed from the field they were cut from.
+    Around cavities it is the exact distance of the finished surfaces, and an error.  What is thin
+    by design, a fin or an ear, is told: as a warning where less than half the wall is left.
     """
     wall = subject.wall
-    if wall is None or wall.value_mm >= profile.wall_mm - TOLERANCE_MM:
-        return
-    if subject.hollowed:
-        fix = "Hollow it with a finer grid (--resolution), or report the model as a defect."
+    if wall is not None and wall.value_mm < profile.wall_mm - TOLERANCE_MM:
+        if subject.hollowed:
+            fix = "Hollow it with a finer grid (--resolution), or report the model as a defect."
+        else:
+            fix = "Hollow the solid model again with this wall, or name the wall meant with --wall."
+        yield Finding(
+            "wall-thickness",
+            "error",
+            f"The thinnest wall between a cavity and the outside is {wall.value_mm:.2f} mm, "
+            f"the profile asks for {profile.wall_mm:g} mm.",
+            fix,
+            value=wall.value_mm,
+            limit=profile.wall_mm,
+            unit="mm",
+            at_mm=wall.at_mm,
+            area_mm2=subject.thin_below(profile.wall_mm - TOLERANCE_MM).total_mm2,
+        )
     else:
-        fix = "Hollow the solid model again with this wall, or name the wall meant with --wall."
+        yield from _fins(subject, profile)
+
+
+def _fins(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    limit = profile.wall_mm - TOLERANCE_MM
+    thin = subject.thin_below(limit)
+    fins = thin.only(thin.wide_mm >= profile.min_feature_mm)
+    if fins.total_mm2 < LEAST_MM2:
+        return
+    hardly = fins.only(fins.thick_mm < HARDLY * profile.wall_mm - TOLERANCE_MM)
+    told = hardly if hardly.total_mm2 >= LEAST_MM2 else fins
+    least, place = told.thinnest
+    bound = HARDLY * profile.wall_mm if told is hardly else profile.wall_mm
     yield Finding(
         "wall-thickness",
-        "error",
-        f"The thinnest wall between a cavity and the outside is {wall.value_mm:.2f} mm, "
-        f"the profile asks for {profile.wall_mm:g} mm.",
-        fix,
-        value=wall.value_mm,
-        limit=profile.wall_mm,
+        "warning" if told is hardly else "info",
+        f"{told.total_mm2:.0f} mm² of its surface stand on walls thinner than {bound:g} mm, the "
+        f"thinnest {least:.2f} mm.",
+        "Thicken these places, scale the model up (--size), or take care of them.",
+        value=least,
+        limit=bound,
         unit="mm",
-        at_mm=wall.at_mm,
+        at_mm=place,
+        area_mm2=told.total_mm2,
     )

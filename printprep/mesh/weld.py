@@ -107,6 +107,14 @@ def edge_counts(faces: Int) -> EdgeCounts:
     return EdgeCounts(int((balance != 0).sum()), int((count > 2).sum()))
 
 
+def shared_edges(faces: Int) -> tuple[Int, Int]:
+    """Every edge (k, 2), smaller vertex first, and the number (k,) of triangles that have it."""
+    edges = np.sort(directed_edges(faces), axis=1)
+    size = int(faces.max(initial=0)) + 1
+    keys, count = np.unique(edges[:, 0] * size + edges[:, 1], return_counts=True)
+    return np.stack(np.divmod(keys, size), axis=1), count
+
+
 def components(faces: Int, vertex_count: int) -> list[Int]:
     """Indices of the faces of each piece that hangs together by shared edges, largest first."""
     from scipy.sparse import coo_matrix

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.pour.flood import basins
-from printprep.pour.space import Space, space_around
+from printprep.pour.space import empty_cells
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -58,15 +58,11 @@ def suction_cups(
         return ()
     box = np.reshape(part.bounding_box(), (2, 3))
     pitch = pitch_mm or float((box[1] - box[0]).max()) / CELLS
-    return cups_in(space_around(part, pitch, 2 * pitch), least_mm2)
-
-
-def cups_in(space: Space, least_mm2: float) -> tuple[Cup, ...]:
-    """The cups of a space whose lowest layer of cells stands on the plate."""
-    outside = np.zeros(space.grid.shape, dtype=bool)
+    grid, empty = empty_cells(part, pitch, 2 * pitch, 0.0)
+    outside = np.zeros(grid.shape, dtype=bool)
     outside[[0, -1]] = outside[:, [0, -1]] = outside[:, :, -1] = True
-    found = basins(space.empty, outside, diagonal=False)
-    pitch, origin = space.grid.pitch_mm, space.grid.origin_mm
+    found = basins(empty, outside, diagonal=False)
+    origin = grid.origin_mm
     cells = np.bincount(found.pool.ravel(), minlength=len(found.layer))
     cups = []
     for number, spill in enumerate(found.spill.tolist()):

@@ -12,7 +12,6 @@ themselves: a hole of the ball's own diameter lets it through, one a twentieth n
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ from printprep.mesh.columns import cross
 from printprep.mesh.measure import arrays
 from printprep.mesh.tree import SurfaceTree
 from printprep.types import Grid
-from printprep.voxel.grid import points_mm
+from printprep.voxel.grid import cropped, points_mm
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -47,26 +46,19 @@ class Space:
     """Cells around a part.
 
     empty : bool of the grid's shape, True where the cell's centre lies in no material.
-    vertices, faces : the part's surface, (n, 3) mm and (m, 3).
+    clearance_mm : distance of empty cells to material, to about half a cell; 0 in full ones.
+    surface : the part's.
     """
 
     grid: Grid
     empty: Bool
-    vertices: Float
-    faces: Int
+    clearance_mm: Float32
+    surface: SurfaceTree
 
-    @cached_property
-    def _tree(self) -> SurfaceTree:
-        return SurfaceTree(self.vertices, self.faces)
-
-    @cached_property
-    def clearance_mm(self) -> Float32:
-        """Distance of empty cells to material, to about half a cell; 0 in full ones."""
-        from scipy.ndimage import distance_transform_edt
-
-        cells = distance_transform_edt(self.empty).astype(np.float32)
-        clearance: Float32 = np.maximum(cells - np.float32(0.5), 0) * self.grid.pitch_mm
-        return clearance
+    def within(self, block: tuple[slice, slice, slice]) -> Space:
+        """The part of it in a block of cells."""
+        grid = cropped(self.grid, block)
+        return Space(grid, self.empty[block], self.clearance_mm[block], self.surface)
 
     def room_for(self, radius_mm: float) -> Bool:
         """Cells that hold a place for the centre of a ball of this radius."""
@@ -91,7 +83,7 @@ class Space:
             return np.zeros(0)
         pitch = self.grid.pitch_mm
         centres = points_mm(self.grid, index)
-        points, best = centres.copy(), self._tree.nearest(centres)[0]
+        points, best = centres.copy(), self.surface.nearest(centres)[0]
         star = np.vstack([np.eye(3), -np.eye(3)])
         for share in _STEPS:
             # What steps this small and smaller can still gain decides who goes on.
@@ -105,7 +97,9 @@ class Space:
                 around = points[going, None] + share * pitch * star
                 limit = pitch / 2
                 around = np.clip(around, centres[going, None] - limit, centres[going, None] + limit)
-                found = self._tree.nearest(around.reshape(-1, 3))[0].reshape(len(going), len(star))
+                found = self.surface.nearest(around.reshape(-1, 3))[0].reshape(
+                    len(going), len(star)
+                )
                 top = found.argmax(axis=1)
                 highest = found[np.arange(len(going)), top]
                 better = highest > best[going]
@@ -115,22 +109,32 @@ class Space:
         return best
 
 
-def space_around(part: Manifold, pitch_mm: float, margin_mm: float, below_mm: float = 0.0) -> Space:
-    """The empty space of a part's bounding box, ``margin_mm`` wider in x and y and above.
+def space_around(part: Manifold, pitch_mm: float, margin_mm: float) -> Space:
+    """The space in a part's bounding box and a margin around it."""
+    from scipy.ndimage import distance_transform_edt
+
+    grid, empty = empty_cells(part, pitch_mm, margin_mm, margin_mm)
+    cells = distance_transform_edt(empty).astype(np.float32)
+    clearance: Float32 = np.maximum(cells - np.float32(0.5), 0) * pitch_mm
+    return Space(grid, empty, clearance, SurfaceTree(*arrays(part)))
+
+
+def empty_cells(
+    part: Manifold, pitch_mm: float, margin_mm: float, below_mm: float
+) -> tuple[Grid, Bool]:
+    """Which cells around a part lie in no material, in its box with a margin all around.
 
     below_mm : the margin under it; with none, the first layer of cells stands on its lowest point.
     """
     low, high = np.reshape(part.bounding_box(), (2, 3))
-    vertices, faces = arrays(part)
     around, under = (int(np.ceil(mm / pitch_mm)) for mm in (margin_mm, below_mm))
     cells = np.maximum(np.ceil((high - low) / pitch_mm - 1e-9).astype(int), 1)
-    slack = (cells * pitch_mm - (high - low)) / 2
-    start = low - slack
+    start = low - (cells * pitch_mm - (high - low)) / 2
     start[2] = low[2]
     nx, ny, nz = (cells + np.array([2 * around, 2 * around, around + under])).tolist()
     origin = start + pitch_mm / 2 - pitch_mm * np.array([around, around, under])
     grid = Grid(origin, pitch_mm, (nx, ny, nz))
-    return Space(grid, ~_filled(vertices, faces, grid), vertices, faces)
+    return grid, ~_filled(*arrays(part), grid)
 
 
 def _filled(vertices: Float, faces: Int, grid: Grid) -> Bool:

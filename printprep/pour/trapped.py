@@ -25,6 +25,7 @@ import numpy as np
 
 from printprep.pour.flood import basins
 from printprep.pour.space import Space, space_around
+from printprep.voxel.grid import block_around
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,6 +44,8 @@ CELLS_PER_BALL = 6.0
 MOST_CELLS = 16e6
 # Balls for spaces that the ball itself does not fit in, and that must get out of them, in r.
 SMALL, SMALL_OUT = 0.6, 0.36
+# How exactly the widest way out is measured.
+WAY_OUT_MM = 0.05
 # Ladder of balls by which enclosed spaces are told from open ones, and how much wider they are.
 LADDER, ENCLOSED = 1.5, 2.0
 # A pool must be this deep, in cells: less may be the grid's own stairs.
@@ -57,6 +60,8 @@ class Pocket:
     volume_mm3 : what stays;  place_mm : (x, y, z) the lowest place of it.
     depth_mm : from that place to the highest that stays.
     enclosed : it lies in a cavity; False in the open, as in a mug (pools only).
+    way_out_mm : of what stays for good, the diameter of the widest ball that gets out, to 0.05 mm
+        or half a cell; 0 where sealed, None for a pool.
     cavity : index of the given cavity it lies in, None when in none.
     """
 
@@ -65,6 +70,7 @@ class Pocket:
     place_mm: tuple[float, float, float]
     depth_mm: float
     enclosed: bool
+    way_out_mm: float | None
     cavity: int | None
 
 
@@ -94,6 +100,8 @@ def trapped(
         return ()
     least = np.pi / 6 * diameter_mm**3 if least_mm3 is None else least_mm3
     space = pour_space(part, diameter_mm, pitch_mm)
+    if space.empty.all():  # thinner than a cell everywhere
+        return ()
     room = space.room_for(diameter_mm / 2)
     found = [*_shut(space, room, diameter_mm / 2), *_pools(space, room, diameter_mm / 2, least)]
     pockets = [_placed(pocket, space, cavities) for pocket in found]
@@ -108,7 +116,7 @@ def pour_space(part: Manifold, diameter_mm: float, pitch_mm: float | None = None
         volume = float(np.prod(high - low + 2 * diameter_mm))
         pitch_mm = max(diameter_mm / CELLS_PER_BALL, (volume / MOST_CELLS) ** (1 / 3))
     margin = diameter_mm / 2 + 3 * pitch_mm
-    return space_around(part, pitch_mm, margin, below_mm=margin)
+    return space_around(part, pitch_mm, margin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +126,7 @@ class _Found:
     kind: Kind
     cells: Int
     enclosed: bool
+    way_out_mm: float | None
 
 
 def _shut(space: Space, fits: Bool, radius_mm: float) -> list[_Found]:
@@ -141,9 +150,30 @@ def _shut(space: Space, fits: Bool, radius_mm: float) -> list[_Found]:
     owner = _nearest_within(space.empty, seeds)
     found = []
     for _, cells in _members(owner, count):
-        kind: Kind = "sealed" if sealed.flat[cells].all() else "narrow"
-        found.append(_Found(kind, cells, True))
+        if sealed.flat[cells].all():
+            found.append(_Found("sealed", cells, True, 0.0))
+        else:
+            way_out = _way_out_mm(space, cells, room == free, radius_mm)
+            found.append(_Found("narrow", cells, True, way_out))
     return found
+
+
+def _way_out_mm(space: Space, cells: Int, free: Bool, radius_mm: float) -> float:
+    """Diameter of the widest ball that gets from these cells to where the ball itself is free."""
+    mine = np.zeros(free.shape, dtype=bool)
+    mine.flat[cells] = True
+    margin = int(np.ceil(2 * radius_mm / space.grid.pitch_mm)) + 4
+    block = block_around(mine, margin)
+    near, inside, out = space.within(block), mine[block], free[block]
+    passes, stays = 0.0, radius_mm
+    while stays - passes > WAY_OUT_MM / 2:
+        middle = (passes + stays) / 2
+        pieces, _ = _pieces(near.room_for(middle) | out, diagonal=True)
+        if len(np.intersect1d(pieces[inside & (pieces > 0)], pieces[out])):
+            passes = middle
+        else:
+            stays = middle
+    return 2 * passes
 
 
 def _pools(space: Space, room: Bool, radius_mm: float, least_mm3: float) -> list[_Found]:
@@ -173,7 +203,7 @@ def _pools(space: Space, room: Bool, radius_mm: float, least_mm3: float) -> list
         if rooms is None:
             rooms = _enclosed(space, room, radius_mm)
         centres = cells[room.flat[cells]]
-        found.append(_Found("pool", wet, _mostly(rooms.flat[centres])))
+        found.append(_Found("pool", wet, _mostly(rooms.flat[centres]), None))
     return found
 
 
@@ -283,6 +313,7 @@ def _placed(found: _Found, space: Space, cavities: Sequence[Manifold]) -> Pocket
         place_mm=(x, y, z),
         depth_mm=(high - low + 1) * grid.pitch_mm,
         enclosed=found.enclosed or cavity is not None,
+        way_out_mm=found.way_out_mm,
         cavity=cavity,
     )
 

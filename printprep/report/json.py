@@ -110,6 +110,8 @@ def finding_json(finding: Finding) -> dict[str, Any]:
         "limit": number(finding.limit),
         "unit": finding.unit,
         "at_mm": None if finding.at_mm is None else _place(finding.at_mm),
+        "area_mm2": number(finding.area_mm2),
+        "volume_mm3": number(finding.volume_mm3),
     }
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
 _TOLD = frozenset({"sealed-cavity"})
+# And those of the model as it is, which hollowing changes nothing about: `check` tells them.
+_OWN = _TOLD | {"coarse-facets", "gap", "overhang-area", "trapped-volume", "wall-thickness"}
 
 
 def show_result(
@@ -67,7 +69,7 @@ def show_result(
         stages = ", ".join(f"{stage} {value:.2f}" for stage, value in result.seconds.items())
         facts.add_row("seconds", f"{total:.2f} ({stages})")
     console.print(facts)
-    show_findings(console, result.findings)
+    show_findings(console, result.findings, told=_TOLD if verbose else _OWN)
     console.print()
     if output is None:
         console.print("Nothing written: a finding is as severe as --fail-on names.")
@@ -144,15 +146,17 @@ def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:
     console.print("\nprintprep profiles show NAME tells where each figure comes from.")
 
 
-def show_findings(console: Console, findings: Sequence[Finding]) -> None:
-    """Each finding with its way out; information the table has given is not repeated."""
-    told = [item for item in findings if item.severity != "info" or item.rule not in _TOLD]
-    if not told:
+def show_findings(
+    console: Console, findings: Sequence[Finding], *, told: frozenset[str] = _TOLD
+) -> None:
+    """Each finding with its way out, but for information of rules that has been ``told``."""
+    left = [item for item in findings if item.severity != "info" or item.rule not in told]
+    if not left:
         return
     table = Table.grid(padding=(0, 2, 0, 0))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for item in told:
+    for item in left:
         words = Text(item.message)
         if item.fix:
             words.append(f"\n→ {item.fix}", style="dim")

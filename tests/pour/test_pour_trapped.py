@@ -123,6 +123,15 @@ def test_a_slot_too_thin_for_the_ball_is_judged_by_what_fits_in_it():
     assert not trapped(block - slot.translate((5, 0, 0)), BALL_MM)  # open along a side
 
 
+@pytest.mark.parametrize("diameter", [1.0, 2.0, 2.7, 3.3])
+@pytest.mark.parametrize("tilt", [0, 25])
+def test_the_widest_way_out_is_measured(diameter, tilt):
+    drill = hole(diameter, 9.0).rotate((tilt, 0, 20)).translate((2.2, 1.3, 1.0))
+    smaller = hole(0.8, 9.0).translate((-5, 0, 0))
+    (pocket,) = trapped(hollow_box(20, 2) - drill - smaller, BALL_MM)
+    assert pocket.way_out_mm == pytest.approx(diameter, abs=0.08)
+
+
 def test_small_pockets_are_left_out():
     part = hollow_box(5, 1)  # 27 mm³
     assert len(trapped(part, BALL_MM)) == 1

@@ -59,6 +59,7 @@ def test_findings_have_every_field():
     assert data == {
         "rule": "tilt", "severity": "error", "message": "falls", "fix": None,
         "value": 0.333333, "limit": None, "unit": None, "at_mm": [0.0, 0.0, 2.0],
+        "area_mm2": None, "volume_mm3": None,
     }  # fmt: skip
 
 

@@ -1,0 +1,78 @@
+"""Rule: the mesh is as fine as the layers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.check.registry import rule
+from printprep.mesh.measure import arrays
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+    from printprep.types import Float, Int
+
+# A bend sharper than this is an edge that is meant; one flatter is not seen.
+_SHARPEST_DEG, _FLATTEST_DEG = 40.0, 1.0
+# What an eye sees where layers are finer.
+_SEEN_MM = 0.1
+# So much of the surface must be coarse.
+LEAST_SHARE = 0.1
+
+
+@rule("coarse-facets")
+def coarse_facets(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Tells that facets will be seen where the model means to be round.
+
+    Between two facets of width w that bend by δ, a round surface would rise by w δ / 8 above the
+    chord; coarse is what misses by more than a layer, or than an eye sees.
+    """
+    limit = max(profile.printer.layer_height_mm, _SEEN_MM)
+    miss, area = _misses(*arrays(subject.outside))
+    coarse = miss > limit
+    share = float(area[coarse].sum() / area.sum()) if len(area) else 0.0
+    if share < LEAST_SHARE:
+        return
+    worst = float(np.percentile(miss[coarse], 50))
+    yield Finding(
+        "coarse-facets",
+        "info",
+        f"{100 * share:.0f} % of its surface is coarser than the print: facets miss a round shape "
+        f"by {worst:.2g} mm and will be seen.",
+        "Export the model with a finer tolerance, if it is meant to be round.",
+        value=worst,
+        limit=limit,
+        unit="mm",
+        area_mm2=float(area[coarse].sum()),
+    )
+
+
+def _misses(vertices: Float, faces: Int) -> tuple[Float, Float]:
+    """(m,) how far each facet misses a round surface, 0 where flat or sharp, and its area."""
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    doubled = np.linalg.norm(normals, axis=1)
+    unit = np.divide(
+        normals, doubled[:, None], out=np.zeros_like(normals), where=doubled[:, None] > 0
+    )
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    owner = np.repeat(np.arange(len(faces)), 3)
+    key = np.minimum(start, end) * len(vertices) + np.maximum(start, end)
+    order = np.argsort(key, kind="stable")
+    a, b = owner[order][::2], owner[order][1::2]
+    length = np.linalg.norm(vertices[end] - vertices[start], axis=1)[order][::2]
+    bend = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", unit[a], unit[b]), -1, 1)))
+    width = np.divide(
+        doubled[a] + doubled[b], 2 * length, out=np.zeros_like(length), where=length > 0
+    )
+    rises = np.where(
+        (bend > _FLATTEST_DEG) & (bend < _SHARPEST_DEG), width * np.radians(bend) / 8, 0
+    )
+    miss = np.zeros(len(faces))
+    np.maximum.at(miss, a, rises)
+    np.maximum.at(miss, b, rises)
+    return miss, doubled / 2

@@ -1,0 +1,47 @@
+"""Rule: the file's triangles have an area."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+# Height below which a triangle faces nowhere in single precision, as a share of the size.
+_FLAT = 4.0 * float(np.finfo(np.float32).eps)
+
+
+@rule("degenerate-triangles")
+def degenerate_triangles(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Tells of triangles without an area, which face nowhere and which programs drop or keep."""
+    del profile
+    raw = subject.raw
+    if raw is None:
+        return
+    corners = raw.vertices[raw.faces]
+    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    doubled = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    size = float(np.ptp(raw.vertices, axis=0).max())
+    flat = np.flatnonzero(doubled <= _FLAT * size * sides.max(axis=1))
+    if len(flat) == 0:
+        return
+    x, y, z = corners[flat[0]].mean(axis=0).tolist()
+    yield Finding(
+        "degenerate-triangles",
+        "info",
+        f"{len(flat)} of its {len(raw.faces)} triangles have no area.",
+        "Most programs drop them; merge close vertices where the model was made.",
+        value=float(len(flat)),
+        limit=0.0,
+        unit="triangles",
+        at_mm=(x, y, z),
+    )

@@ -1,0 +1,43 @@
+"""Rule: pins and rods are as thick as the profile asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+TOLERANCE_MM = 0.05
+# Less surface than this is a tip, and tips are meant to end.
+LEAST_MM2 = 5.0
+
+
+@rule("min-feature")
+def min_feature(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a pin or a rod that breaks off, or that a slicer leaves out.
+
+    A member counts where it is thinner than the profile's minimum feature both ways across.
+    """
+    limit = profile.min_feature_mm - TOLERANCE_MM
+    thin = subject.thin_below(max(limit, profile.wall_mm - TOLERANCE_MM))
+    rods = thin.only((thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm))
+    if rods.total_mm2 < LEAST_MM2:
+        return
+    least, place = rods.thinnest
+    yield Finding(
+        "min-feature",
+        "warning",
+        f"A pin or rod is {least:.2f} mm thick, the profile asks for {profile.min_feature_mm:g} mm "
+        f"({rods.total_mm2:.0f} mm² of surface).",
+        "Thicken it, or scale the model up (--size).",
+        value=least,
+        limit=profile.min_feature_mm,
+        unit="mm",
+        at_mm=place,
+        area_mm2=rods.total_mm2,
+    )

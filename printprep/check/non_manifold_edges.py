@@ -1,0 +1,37 @@
+"""Rule: two of the file's triangles at every edge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.mesh.weld import shared_edges
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("non-manifold-edges")
+def non_manifold_edges(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Tells where the surface touches itself along a line: programs part it in different ways."""
+    del profile
+    if subject.raw is None:
+        return
+    ends, count = shared_edges(subject.raw.faces)
+    crowded = ends[(count > 2) & (count % 2 == 0)]
+    if len(crowded) == 0:
+        return
+    x, y, z = subject.raw.vertices[crowded[0]].mean(axis=0).tolist()
+    yield Finding(
+        "non-manifold-edges",
+        "info",
+        f"At {len(crowded)} edges more than two triangles meet: bodies touch there along a line.",
+        "Part them or let them overlap; `printprep hollow` does one or the other.",
+        value=float(len(crowded)),
+        limit=0.0,
+        unit="edges",
+        at_mm=(x, y, z),
+    )

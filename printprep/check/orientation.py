@@ -1,0 +1,41 @@
+"""Rule: the file's triangles face outward."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.check.registry import rule
+from printprep.mesh.orient import right_side_out
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("orientation")
+def orientation(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents a solid from being taken for a void where triangles face inward."""
+    del profile
+    raw = subject.raw
+    if raw is None:
+        return
+    outward, _ = right_side_out(raw.vertices, raw.faces)
+    turned = np.flatnonzero((outward != raw.faces).any(axis=1))
+    if len(turned) == 0:
+        return
+    x, y, z = raw.vertices[raw.faces[turned[0]]].mean(axis=0).tolist()
+    yield Finding(
+        "orientation",
+        "warning",
+        f"{len(turned)} of its {len(raw.faces)} triangles face inward: a slicer may take material "
+        "for empty space.",
+        "Turn them where the model was made; `printprep hollow` does too.",
+        value=float(len(turned)),
+        limit=0.0,
+        unit="triangles",
+        at_mm=(x, y, z),
+    )

@@ -1,0 +1,34 @@
+"""Rule: the file's shells do not reach into each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("overlapping-shells")
+def overlapping_shells(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Tells that shells overlap: slicers print what they cover together, other programs differ."""
+    del profile
+    pierced = subject.pierced
+    if pierced is None or not pierced.apart.any():
+        return
+    at = pierced.at_mm[pierced.apart]
+    x, y, z = at[0].tolist()
+    yield Finding(
+        "overlapping-shells",
+        "info",
+        f"Separate shells overlap at {len(at)} edges: a slicer prints what they cover together.",
+        "Unite them where they were made; `printprep hollow` does too.",
+        value=float(len(at)),
+        limit=0.0,
+        unit="edges",
+        at_mm=(x, y, z),
+    )

@@ -1,0 +1,34 @@
+"""Rule: no shell of the file passes through itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from printprep.check.registry import rule
+from printprep.types import Finding
+
+if TYPE_CHECKING:
+    from printprep.check.subject import Subject
+    from printprep.profiles import Profile
+
+
+@rule("self-intersection")
+def self_intersection(subject: Subject, profile: Profile) -> Iterator[Finding]:
+    """Prevents slicers from disagreeing on what is inside where a surface passes through itself."""
+    del profile
+    pierced = subject.pierced
+    if pierced is None or pierced.apart.all():
+        return
+    at = pierced.at_mm[~pierced.apart]
+    x, y, z = at[0].tolist()
+    yield Finding(
+        "self-intersection",
+        "warning",
+        f"The surface passes through itself at {len(at)} edges: programs differ on what is inside.",
+        "`printprep hollow` resolves it, or repair it where it was made.",
+        value=float(len(at)),
+        limit=0.0,
+        unit="edges",
+        at_mm=(x, y, z),
+    )

@@ -1,0 +1,69 @@
+"""Where a triangle mesh passes through itself: edges that pierce triangles they do not belong to.
+
+Two triangles that cross always have an edge of one through the other.  Surfaces that only touch,
+at a corner or flat on each other, are not pierced.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.mesh.tree import SurfaceTree
+from printprep.mesh.weld import components, directed_edges
+
+if TYPE_CHECKING:
+    from printprep.types import Bool, Float, Int
+
+# Closer than this share of the size to an edge's end, it touches and does not pierce.
+_TOUCH = 1e-5
+# An edge that first meets a triangle at its own corner is followed on, so many times.
+_ROUNDS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Pierced:
+    """Edges through triangles.
+
+    edge : (k, 2) vertex indices;  face : (k,) the triangle;  at_mm : (k, 3) where.
+    apart : (k,) whether the two belong to different pieces of the surface.
+    """
+
+    edge: Int
+    face: Int
+    at_mm: Float
+    apart: Bool
+
+
+def pierced(vertices: Float, faces: Int) -> Pierced:
+    """The edges of a mesh that pierce it, each with the first triangle it goes through."""
+    surface = SurfaceTree(vertices, faces)
+    edges = np.unique(np.sort(directed_edges(faces), axis=1), axis=0)
+    way = vertices[edges[:, 1]] - vertices[edges[:, 0]]
+    length = np.linalg.norm(way, axis=1)
+    touch = _TOUCH * float(np.ptp(vertices, axis=0).max())
+    going = np.flatnonzero(length > 3 * touch)
+    done = np.full(len(edges), touch)
+    hit = np.full(len(edges), -1, dtype=np.int64)
+    for _ in range(_ROUNDS):
+        unit = way[going] / length[going, None]
+        far, face = surface.first_hit(vertices[edges[going, 0]] + done[going, None] * unit, unit)
+        done[going] += far
+        inside = (face >= 0) & (done[going] < length[going] - touch)
+        own = (faces[face][:, :, None] == edges[going][:, None, :]).any(axis=(1, 2))
+        hit[going[inside & ~own]] = face[inside & ~own]
+        going = going[inside & own]
+        done[going] += touch
+    found = np.flatnonzero(hit >= 0)
+    piece = np.zeros(len(vertices), dtype=np.int64)
+    for number, group in enumerate(components(faces, len(vertices))):
+        piece[faces[group]] = number
+    at = vertices[edges[found, 0]] + (done[found] / length[found])[:, None] * way[found]
+    return Pierced(
+        edge=edges[found],
+        face=hit[found],
+        at_mm=at,
+        apart=piece[edges[found, 0]] != piece[faces[hit[found], 0]],
+    )
