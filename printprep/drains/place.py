@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.cavity.carve import cavities_of
+from printprep.drains.balls import balls_in
 from printprep.drains.channel import Channel, bored
 from printprep.drains.fill import filling
-from printprep.drains.pools import Outlet, Pools
+from printprep.drains.pools import Pools
 from printprep.drains.probe import channel_along
 from printprep.drains.search import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
 from printprep.drains.space import space_of
@@ -30,20 +31,24 @@ if TYPE_CHECKING:
     from printprep.drains.search import Candidate, Role
     from printprep.types import Float, Int
 
-# A pool that holds less is filled: a hole would cost more looks than it saves.
-LEAST_POOL_MM3 = 150.0
+# A pool that holds less than this, or than this share of all cavities, is filled: a hole would cost
+# more looks than it saves.
+LEAST_POOL_MM3 = 250.0
+LEAST_POOL = 0.005
 # What stands no higher than this counts for nothing there.
 FILM_MM = 0.3
 # An outlet that frees less than this share of its pool is not worth drilling.
 LEAST_FREED = 0.5
+# How far above its lowest place an outlet of a pool may begin: tried one after the other.
+BANDS_MM = (4.0, 12.0, 30.0)
 # Ways tried exactly before a pool counts as out of a hole's reach.
-MOST_TRIED = 40
+MOST_TRIED = 25
 # Two mouths are this many diameters apart at least.
 APART = 2.5
 # A hole is kept where its ball still fits but for this.
-FITS_MM = 0.02
-# Filled floors lie this much above the channel's, so that they meet it from above.
-RAISED_MM = 0.1
+FITS_MM = 0.1
+# Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
+RUNS = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +103,7 @@ def drained(
     driller.keep(known)
     driller.drill_outlets()
     driller.drill_vents(count)
-    left = void - driller.filling()
+    left = void - filling(driller.space, driller.tops_mm())
     return _assigned(driller.drilled, cavities_of(left, min_feature_mm), cavities)
 
 
@@ -113,79 +118,92 @@ class Driller:
         self.wall_mm = wall_mm
         self.clearance_mm = wall_mm / 2
         self.space = space_of(outside, void, diameter_mm)
-        self.pools = Pools(self.space.dexels, self.space.grid)
         self.outside = Surface.of(outside)
         self.void = Surface.of(void)
+        self.balls = balls_in(self.space, self.void, self.radius_mm)
+        self.pools = Pools(self.balls, self.space.grid)
         self.drilled: list[tuple[Role, Channel]] = []
-        self._outlets: list[Outlet] = []
 
     def keep(self, holes: Sequence[Hole]) -> None:
         """Take over holes whose inner ball still fits in the void."""
         for hole in holes:
-            centre = hole.channel.inner_mm[None]
-            if self.void.depth_mm(centre)[0] < self.radius_mm - FITS_MM:
-                continue
-            self.drilled.append((hole.role, hole.channel))
-            if hole.role == "outlet":
-                self._outlets.append(self._outlet(hole.channel))
+            clearance = self.void.depth_mm(hole.channel.inner_mm[None])[0]
+            if clearance >= self.radius_mm - FITS_MM and len(self.pools.over(hole.channel)):
+                self.drilled.append((hole.role, hole.channel))
 
     def drill_outlets(self) -> None:
         """An outlet for every pool that is worth one, the largest first."""
         beyond_reach = np.zeros(0, dtype=np.int64)
         while True:
-            standing = self.pools.standing_mm(self.pools.levels(self._outlets, slope=0.0))
-            standing = np.maximum(standing - FILM_MM, 0.0)
+            outlets = self.pools.outlets(self._channels("outlet"))
+            levels = self.pools.levels(outlets, slope=0.0)
+            film = np.where(np.isfinite(levels), FILM_MM, 0.0)
+            standing = np.maximum(self.pools.standing_mm(levels) - film, 0.0)
             pool, volume_mm3 = self.pools.largest(standing, beyond_reach)
-            if volume_mm3 < LEAST_POOL_MM3:
+            if volume_mm3 < max(LEAST_POOL_MM3, LEAST_POOL * float(self.pools.volume_mm3.sum())):
                 return
             channel = self._outlet_of(pool, volume_mm3)
             if channel is None:
                 beyond_reach = np.concatenate([beyond_reach, pool])
-                continue
-            self.drilled.append(("outlet", channel))
-            self._outlets.append(self._outlet(channel))
+            else:
+                self.drilled.append(("outlet", channel))
 
     def drill_vents(self, count: int) -> None:
         """A vent for every cavity with an outlet, and more up to ``count`` holes in each."""
-        group = self.pools.components()
-        drains = [group[outlet.dexels[0]] for outlet in self._outlets]
-        vents = [
-            group[self._outlet(channel).dexels[:1]]
+        reached = np.isfinite(self.pools.levels(self.pools.outlets(self._channels("outlet"))))
+        bodies = [
+            (role, int(self.balls.body[self.pools.over(channel)[0]]))
             for role, channel in self.drilled
-            if role == "vent"
         ]
-        for number in sorted(set(drains)):
-            have = drains.count(number)
-            vented = sum(number in where for where in vents)
-            for _ in range(max(count - have, min(count - 1, 1)) - vented):
-                channel = self._vent_of(np.flatnonzero(group == number))
+        for body in sorted({body for role, body in bodies if role == "outlet"}):
+            outlets, vents = (bodies.count((role, body)) for role in ("outlet", "vent"))
+            for _ in range(max(count - outlets, min(count - 1, 1)) - vents):
+                channel = self._vent_of(np.flatnonzero(reached & (self.balls.body == body)))
                 if channel is None:
                     break
                 self.drilled.append(("vent", channel))
 
-    def filling(self) -> Manifold:
-        """What has to be filled, so that all that is left drains."""
-        levels = self.pools.levels(self._outlets)
-        return filling(self.pools, levels, self.space.void)
+    def tops_mm(self) -> Float:
+        """(k,) how high every void cell has to be filled so that the rest drains, else −inf."""
+        channels = self._channels("outlet")
+        small = balls_in(self.space, self.void, RUNS * self.radius_mm)
+        return np.maximum(
+            self.pools.tops_mm(channels), Pools(small, self.space.grid).tops_mm(channels)
+        )
+
+    def _channels(self, role: Role) -> list[Channel]:
+        return [channel for other, channel in self.drilled if other == role]
 
     def _outlet_of(self, pool: Int, volume_mm3: float) -> Channel | None:
-        balls = balls_at_rest(self.space, self.void, pool, self.radius_mm)
-        if not len(balls):
-            return None
-        below = self._held_below(pool, balls[:, 2] - self.radius_mm + RAISED_MM)
-        worth = volume_mm3 - below >= LEAST_FREED * volume_mm3
-        balls, below = balls[worth], below[worth]
-        return self._first_clean(self._ways(balls, FILLED_MM * below, "outlet"))
+        """The best outlet of a pool, from farther up where none begins lower."""
+        for band_mm in self._bands(pool):
+            balls = balls_at_rest(self.pools, pool, band_mm)
+            below = self.pools.held_below_mm3(pool, balls[:, 2])
+            worth = volume_mm3 - below >= LEAST_FREED * volume_mm3
+            ways = self._ways(balls[worth], FILLED_MM * below[worth], "outlet")
+            channel = self._first_clean(ways)
+            if channel is not None:
+                return channel
+        return None
+
+    def _bands(self, pool: Int) -> tuple[float, ...]:
+        """Bands of height to look for balls at rest in, up to the first that holds them all."""
+        dexels = self.pools.dexels
+        high = float(np.ptp([dexels.low_mm[pool].min(), dexels.high_mm[pool].max()]))
+        return (*(band for band in BANDS_MM if band < high), high)
 
     def _vent_of(self, cavity: Int) -> Channel | None:
-        balls = balls_at_rest(self.space, self.void, cavity, self.radius_mm, top=True)
-        if not len(balls):
-            return None
+        """The best vent of a cavity, from farther down where none begins higher."""
         top = float(self.pools.dexels.high_mm[cavity].max())
         mouths = np.array([channel.centre_mm for _, channel in self.drilled])
-        away = np.linalg.norm(balls[:, None] - mouths, axis=2).min(axis=1)
-        extra = DEPTH_MM * (top - balls[:, 2]) - AWAY_MM * away
-        return self._first_clean(self._ways(balls, extra, "vent"))
+        for band_mm in self._bands(cavity)[-2:]:
+            balls = balls_at_rest(self.pools, cavity, band_mm, top=True)
+            away = np.linalg.norm(balls[:, None] - mouths, axis=2).min(axis=1)
+            extra = DEPTH_MM * (top - balls[:, 2]) - AWAY_MM * away
+            channel = self._first_clean(self._ways(balls, extra, "vent"))
+            if channel is not None:
+                return channel
+        return None
 
     def _ways(self, balls: Float, extra_mm: Float, role: Role) -> tuple[Candidate, ...]:
         return ways_out(
@@ -194,18 +212,18 @@ class Driller:
 
     def _first_clean(self, ways: Sequence[Candidate]) -> Channel | None:
         """The cheapest way that is clean by exact measure, apart from the holes there are."""
-        tried = 0
+        failed: list[Candidate] = []
         for way in ways:
-            if tried == MOST_TRIED:
+            if len(failed) == MOST_TRIED:
                 break
-            if not self._apart(way.mouth_mm):
+            if not self._apart(way.mouth_mm) or any(way.like(other) for other in failed):
                 continue
-            tried += 1
             channel = channel_along(
                 way, self.outside, self.void, self.diameter_mm, self.wall_mm, self.clearance_mm
             )
             if channel is not None and self._apart(channel.centre_mm):
                 return channel
+            failed.append(way)
         return None
 
     def _apart(self, mouth_mm: Float) -> bool:
@@ -213,25 +231,6 @@ class Driller:
         return all(
             float(np.linalg.norm(mouth_mm - other.centre_mm)) >= least for _, other in self.drilled
         )
-
-    def _outlet(self, channel: Channel) -> Outlet:
-        """The dexels over a channel's inner ball, which empty to just above its floor."""
-        dexels, grid = self.pools.dexels, self.space.grid
-        i, j = np.divmod(dexels.column, grid.shape[1])
-        x, y = (grid.origin_mm[a] + grid.pitch_mm * k for a, k in ((0, i), (1, j)))
-        near = np.hypot(x - channel.inner_mm[0], y - channel.inner_mm[1]) <= max(
-            0.6 * self.radius_mm, 0.75 * grid.pitch_mm
-        )
-        z = float(channel.inner_mm[2])
-        near &= (dexels.low_mm < z) & (dexels.high_mm > z)
-        return Outlet(np.flatnonzero(near), channel.floor_mm + RAISED_MM)
-
-    def _held_below(self, pool: Int, levels_mm: Float) -> Float:
-        """(n,) mm³ of a pool that lie below each of these levels."""
-        low, high = self.pools.dexels.low_mm[pool], self.pools.dexels.high_mm[pool]
-        deep = np.clip(levels_mm[:, None] - low, 0, high - low)
-        result: Float = deep.sum(axis=1) * self.pools.area_mm2
-        return result
 
 
 def _assigned(

@@ -1,6 +1,6 @@
-"""What stays in a cavity when it is tipped out upright: pools, from the floor's own heights.
+"""What stays in a cavity as it stands: pools, by where the centre of a ball can roll.
 
-The cavity is a network of dexels, upright stretches over the grid's columns: two of neighbouring
+Its places are a network of dexels, upright stretches over the grid's columns: two of neighbouring
 columns join where they overlap.  Priority flood (Barnes, Lehman and Mulla, "Priority-flood",
 Computers & Geosciences 62, 2014) gives each the level down to which it empties through the outlets
 there are: the lowest pass on the way, and a slope along it, so that what is filled up to that level
@@ -18,11 +18,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from printprep.drains.space import Dexels
+    from printprep.drains.balls import Balls
+    from printprep.drains.channel import Channel
     from printprep.types import Bool, Float, Grid, Int
 
 # Floors fall toward an outlet by this much of the way there: about half a degree.
 SLOPE = 0.01
+# Liquid that stands lower than this is a film.
+LEAST_MM = 0.01
+# Filled floors lie this much above the channel's, so that they meet it from above.
+RAISED_MM = 0.1
+# A ball that only just fits has this much of its column for itself.
+SHORTEST_MM = 0.01
+# A dexel that ends this near to a height passes by it.
+NEAR_MM = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +43,14 @@ class Outlet:
 
 
 class Pools:
-    """The dexels of a cavity as a network in which liquid stands."""
+    """The centres of a ball in a cavity as a network in which it rolls, and what it leaves."""
 
-    def __init__(self, dexels: Dexels, grid: Grid) -> None:
-        self.dexels = dexels
+    def __init__(self, balls: Balls, grid: Grid) -> None:
+        self.balls = balls
         self.grid = grid
-        self.area_mm2 = grid.pitch_mm**2
+        self.dexels = dexels = balls.dexels
+        self.volume_mm3 = balls.volume_mm3
+        self._long_mm = np.maximum(dexels.high_mm - dexels.low_mm, SHORTEST_MM)
 
     @cached_property
     def _links(self) -> tuple[Int, Int, Float]:
@@ -101,9 +112,24 @@ class Pools:
                     heapq.heappush(heap, (through, other))
         return np.array(level)
 
+    def tops_mm(self, channels: Sequence[Channel]) -> Float:
+        """(k,) how high every void cell has to be filled so that the rest drains, else −inf.
+
+        What a ball cannot leave reaches up to a radius below where its centre passes out.
+        """
+        levels = self.levels(self.outlets(channels))
+        wet = levels > self.dexels.low_mm + LEAST_MM
+        tops = np.where(wet, levels - self.balls.radius_mm, -np.inf)
+        nearest = self.balls.nearest
+        if not len(tops):
+            return np.full(len(nearest), np.inf)
+        # A void that holds no ball is left to smaller ones
+        return np.where(nearest >= 0, tops[nearest], -np.inf)
+
     def standing_mm(self, levels: Float) -> Float:
         """(n,) how high liquid stands over each dexel's floor."""
-        return np.minimum(levels, self.dexels.high_mm) - self.dexels.low_mm
+        high = np.maximum(self.dexels.high_mm, self.dexels.low_mm + SHORTEST_MM)
+        return np.minimum(levels, high) - self.dexels.low_mm
 
     def largest(self, standing_mm: Float, excluded: Int) -> tuple[Int, float]:
         """The dexels of the pool that holds most, and what it holds in mm³.
@@ -111,16 +137,37 @@ class Pools:
         excluded : dexels whose pools are not asked for.
         """
         label = self._connected(standing_mm > 0)
-        volume = np.bincount(label[label >= 0], weights=standing_mm[label >= 0] * self.area_mm2)
+        held = self.volume_mm3 * np.minimum(standing_mm / self._long_mm, 1.0)
+        volume = np.bincount(label[label >= 0], weights=held[label >= 0])
         volume[label[excluded][label[excluded] >= 0]] = 0.0
         if not len(volume) or volume.max() <= 0:
             return np.zeros(0, dtype=np.int64), 0.0
         number = int(volume.argmax())
         return np.flatnonzero(label == number), float(volume[number])
 
-    def components(self) -> Int:
-        """(n,) which connected part of the void each dexel belongs to."""
-        return self._connected(np.ones(len(self.dexels.column), dtype=bool))
+    def held_below_mm3(self, pool: Int, levels_mm: Float) -> Float:
+        """(n,) what some dexels hold below each of these levels."""
+        deep = (levels_mm[:, None] - self.dexels.low_mm[pool]) / self._long_mm[pool]
+        result: Float = np.clip(deep, 0.0, 1.0) @ self.volume_mm3[pool]
+        return result
+
+    def outlets(self, channels: Sequence[Channel]) -> list[Outlet]:
+        """Where these channels drain the network, and down to what level."""
+        lower = self.balls.radius_mm + RAISED_MM
+        return [Outlet(self.over(channel), channel.floor_mm + lower) for channel in channels]
+
+    def over(self, channel: Channel) -> Int:
+        """The dexels that pass by a channel's inner end."""
+        point = channel.inner_mm
+        # A smaller ball rests lower in the one at the end
+        spare = channel.diameter_mm / 2 - self.balls.radius_mm
+        reach_mm = max(0.3 * channel.diameter_mm, 0.75 * self.grid.pitch_mm)
+        i, j = np.divmod(self.dexels.column, self.grid.shape[1])
+        x, y = (self.grid.origin_mm[a] + self.grid.pitch_mm * k for a, k in ((0, i), (1, j)))
+        near = np.hypot(x - point[0], y - point[1]) <= reach_mm
+        near &= self.dexels.low_mm <= point[2] + NEAR_MM
+        near &= self.dexels.high_mm >= point[2] - spare - NEAR_MM
+        return np.flatnonzero(near)
 
     def _connected(self, wet: Bool) -> Int:
         from scipy.sparse import csr_array

@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 if TYPE_CHECKING:
+    from printprep.drains.pools import Pools
     from printprep.drains.space import Space
     from printprep.types import Bool, Float, Int
-    from printprep.voxel.distance import Surface
 
 Role = Literal["outlet", "vent"]
 
-# Balls tried at most, and how far above a pool's lowest floor their columns may begin.
-MOST_BALLS = 250
-FLOOR_BAND_MM = 5.0
-MOST_MOVES = 12
+# Balls tried at most.
+MOST_BALLS = 100
 # An outlet falls at least this much on its way out, so that what is level on paper runs in print.
 FALL_DEG = 3.0
 AZIMUTHS = 24
@@ -32,18 +30,21 @@ VENT_FALLS_DEG = (70.0, 50.0, 30.0, 10.0, -10.0, -30.0, -50.0, -70.0)
 LONGEST_MM = 30.0
 # A channel that goes out askew by more than the angle of this cosine would cut along the surface.
 LEAST_COSINE = 0.35
+# Ways whose mouths are this near and whose axes have this cosine are alike.
+LIKE_MM = 3.0
+LIKE_COSINE = 0.75
 # A ball has come out where it is this much of its radius away from material.
 BALL_OUT = 0.8
 # What a millimetre of channel is worth in other faults.
-UPWARD_MM = 4.0  # a mouth that looks straight up, against one that looks straight down
+UPWARD_MM = 10.0  # a mouth that looks straight up, against one that looks straight down
 CONVEX_MM = 2.0  # for each millimetre that the surface around a mouth falls away
 RELIEF_MM = 4.0  # for each millimetre of its unevenness
 FILLED_MM = 0.02  # for each cubic millimetre that has to be filled below the channel
 RUN_MM = 0.1  # for each millimetre that it runs through the cavity before the wall
 SIGHT_MM = 0.05  # for each millimetre of cavity in line with the channel, as credit
 FULL_SIGHT_MM = 60.0
-AWAY_MM = 0.15  # for each millimetre between a vent and the nearest outlet, as credit
-DEPTH_MM = 0.5  # for each millimetre that a vent lies below the cavity's top
+AWAY_MM = 0.1  # for each millimetre between a vent and the nearest outlet, as credit
+DEPTH_MM = 0.3  # for each millimetre that a vent lies below the cavity's top
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,36 +56,25 @@ class Candidate:
     mouth_mm: Float
     cost_mm: float
 
+    def like(self, other: Candidate) -> bool:
+        """Whether another is so near that it meets the same obstacles."""
+        near = float(np.linalg.norm(self.mouth_mm - other.mouth_mm)) < LIKE_MM
+        return near and float(self.axis @ other.axis) > LIKE_COSINE
 
-def balls_at_rest(
-    space: Space, void: Surface, dexels: Int, radius_mm: float, *, top: bool = False
-) -> Float:
-    """(n, 3) centres of the lowest (or highest) balls that fit over some of these dexels.
 
-    Each is found by moving up its column by what it lacks: a distance changes no faster than that.
+def balls_at_rest(pools: Pools, pool: Int, band_mm: float, *, top: bool = False) -> Float:
+    """(n, 3) centres of balls at rest in a pool, in columns whose own lowest lie in a band.
+
+    top : the highest instead of the lowest.
     """
-    low, high = space.dexels.low_mm[dexels], space.dexels.high_mm[dexels]
-    edge = -high if top else low
-    near = np.flatnonzero((edge <= edge.min() + FLOOR_BAND_MM) & (high - low >= 2 * radius_mm))
-    if not len(near):
-        return np.zeros((0, 3))
-    near = near[np.linspace(0, len(near) - 1, min(MOST_BALLS, len(near))).astype(int)]
-    ny = space.grid.shape[1]
-    i, j = np.divmod(space.dexels.column[dexels[near]], ny)
-    xy = space.grid.origin_mm[:2] + space.grid.pitch_mm * np.column_stack([i, j])
-    z = high[near] - radius_mm if top else low[near] + radius_mm
-    way = -1.0 if top else 1.0
-    moving = np.ones(len(z), dtype=bool)
-    for _ in range(MOST_MOVES):
-        # Columns run between the void's own surfaces: inside it needs no test
-        lacking = radius_mm - void.distance_mm(np.column_stack([xy, z]))
-        moving = lacking > 1e-3
-        z = np.where(moving, z + way * (lacking + 1e-3), z)
-        keep = (z <= high[near] - radius_mm + 1e-9) & (z >= low[near] + radius_mm - 1e-9)
-        xy, z, near, moving = xy[keep], z[keep], near[keep], moving[keep]
-        if not moving.any():
-            break
-    return np.column_stack([xy, z])[~moving]
+    dexels = pools.dexels
+    edge = -dexels.high_mm[pool] if top else dexels.low_mm[pool]
+    near = np.flatnonzero(edge <= edge.min() + band_mm)
+    near = pool[near[np.linspace(0, len(near) - 1, min(MOST_BALLS, len(near))).astype(int)]]
+    i, j = np.divmod(dexels.column[near], pools.grid.shape[1])
+    z = dexels.high_mm[near] if top else dexels.low_mm[near]
+    xy = pools.grid.origin_mm[:2] + pools.grid.pitch_mm * np.column_stack([i, j])
+    return np.column_stack([xy, z])
 
 
 def directions(role: Role) -> Float:
@@ -133,7 +123,8 @@ def ways_out(
     within = ((depth >= asked - step) | (index >= exits[:, None])).all(axis=1)
     # A ball that has come out lies in open air
     after = np.minimum(exits[:, None] + np.arange(int(4 * radius_mm / step)), len(t) - 1)
-    clear = np.take_along_axis(depth, after, axis=1) <= -BALL_OUT * radius_mm
+    beyond = np.take_along_axis(depth, after, axis=1)
+    clear = (beyond <= -BALL_OUT * radius_mm) & ~np.logical_or.accumulate(beyond > 0, axis=1)
     at = np.take_along_axis(after, clear.argmax(axis=1)[:, None], axis=1)[:, 0]
     out = start + t[at][:, None] * axis
     mouth = start + t[exits][:, None] * axis

@@ -44,14 +44,13 @@ class Dexels:
 class Space:
     """A part's material, void and surroundings on one grid; arrays of shape ``grid.shape``.
 
-    void : bool, cells of the cavities;  dexels : the cavities along the grid's columns.
+    void : bool, cells of the cavities.
     depth_mm : float32, below the part's outside, to about half a cell, negative in the air.
     open : bool, cells of the air with a way to the air around the part through layers no higher.
     """
 
     grid: Grid
     void: Bool
-    dexels: Dexels
     depth_mm: Float
     open: Bool
 
@@ -83,11 +82,10 @@ def space_of(outside: Manifold, void: Manifold, diameter_mm: float) -> Space:
     low = np.array([*(box[:2] - MARGIN_CELLS * pitch), pitch / 2])
     counts = np.ceil((box[3:] + MARGIN_CELLS * pitch - low) / pitch).astype(int) + 1
     grid = Grid(low, pitch, (int(counts[0]), int(counts[1]), int(counts[2])))
-    body = _filled(dexels_of(outside, grid), grid)
-    inside = dexels_of(void, grid)
+    body = filled(dexels_of(outside, grid), grid)
     deep = distance_transform_edt(body) - distance_transform_edt(~body)
     depth = ((deep - 0.5 * np.sign(deep)) * pitch).astype(np.float32)
-    return Space(grid, _filled(inside, grid) & body, inside, depth, open_air(~body))
+    return Space(grid, filled(dexels_of(void, grid), grid) & body, depth, open_air(~body))
 
 
 def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:
@@ -120,7 +118,7 @@ def open_air(empty: Bool) -> Bool:
     return result
 
 
-def _filled(dexels: Dexels, grid: Grid) -> Bool:
+def filled(dexels: Dexels, grid: Grid) -> Bool:
     """Cells whose centre lies in a dexel."""
     nx, ny, nz = grid.shape
     ends = np.zeros((nx * ny, nz + 1), dtype=np.int32)

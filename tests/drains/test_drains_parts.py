@@ -7,12 +7,14 @@ import pytest
 from manifold3d import Manifold
 from solids import box
 
-from printprep.drains.channel import Channel, bored
+from printprep.drains.balls import balls_in
+from printprep.drains.channel import Channel, bored, frame
 from printprep.drains.fill import filling
 from printprep.drains.plugs import TAPER_MM, plug
-from printprep.drains.pools import SLOPE, Outlet, Pools
-from printprep.drains.space import dexels_of, open_air
-from printprep.types import Drain, Grid
+from printprep.drains.pools import RAISED_MM, SLOPE, Pools
+from printprep.drains.space import Space, open_air, space_of
+from printprep.types import Drain
+from printprep.voxel.distance import Surface
 
 
 def test_open_air_knows_cups_by_their_layers():
@@ -26,60 +28,70 @@ def test_open_air_knows_cups_by_their_layers():
     assert open_air(empty)[4, 4, 2:5].all()
 
 
-def w_shaped() -> tuple[Pools, Manifold]:
+RADIUS = 1.75
+
+
+def w_shaped() -> tuple[Pools, Space, Manifold]:
     """Two basins 10 × 10, floors at 1 and 3 mm, under one room, joined over a sill at 6 mm."""
     void = box(10, 10, 11).translate((-7.5, 0, 1)) + box(10, 10, 9).translate((7.5, 0, 3))
     void += box(25, 10, 6).translate((0, 0, 6))
-    grid = Grid(np.array([-14.75, -7.25, 0.25]), 0.5, (60, 30, 28))
-    return Pools(dexels_of(void, grid), grid), void
+    space = space_of(box(29, 14, 14), void, 2 * RADIUS)
+    return Pools(balls_in(space, Surface.of(void), RADIUS), space.grid), space, void
 
 
-def outlet_at(pools: Pools, x: float, level: float) -> Outlet:
-    i, _ = np.divmod(pools.dexels.column, pools.grid.shape[1])
-    at = pools.grid.origin_mm[0] + pools.grid.pitch_mm * i
-    return Outlet(np.flatnonzero(np.abs(at - x) < 0.3), level)
+def channel_at(x: float, floor_mm: float) -> Channel:
+    """A way out whose inner end's floor is at this height."""
+    inner = np.array([x, 0.0, floor_mm + RADIUS])
+    return Channel(inner, np.array([0.0, 1.0, 0.0]), 2 * RADIUS, 7.0, 7.5, 2.0, floor_mm)
 
 
-def test_without_an_outlet_all_of_it_stands():
-    pools, void = w_shaped()
-    standing = pools.standing_mm(pools.levels([]))
-    held = float(standing.sum() * pools.area_mm2)
-    assert held == pytest.approx(void.volume(), rel=0.02)
+LEFT, RIGHT = channel_at(-10.0, 1.0), channel_at(10.0, 3.0)
+
+
+def test_a_ball_rests_a_radius_above_the_floor():
+    pools, _, void = w_shaped()
+    dexels = pools.dexels
+    assert dexels.low_mm.min() == pytest.approx(1 + RADIUS, abs=0.02)
+    assert dexels.high_mm.max() == pytest.approx(12 - RADIUS, abs=0.02)
+    assert pools.volume_mm3.sum() == pytest.approx(void.volume(), rel=0.03)
+
+
+def test_without_an_outlet_all_of_it_stays():
+    pools, space, void = w_shaped()
+    assert np.isinf(pools.levels([])).all()
+    left = void - filling(space, pools.tops_mm([]))
+    assert left.volume() < 1e-3 * void.volume()
 
 
 def test_a_basin_holds_up_to_its_sill():
-    pools, _ = w_shaped()
-    levels = pools.levels([outlet_at(pools, -12.2, 1.0)])
+    pools, _, _ = w_shaped()
+    levels = pools.levels(pools.outlets([LEFT]))
     pool, volume = pools.largest(pools.standing_mm(levels), np.zeros(0, dtype=np.int64))
-    # 3 mm deep to the sill, and the slope from the outlet on top
-    assert 300 < volume < 300 + 100 * 25 * SLOPE + 3
-    assert pools.dexels.low_mm[pool].min() == pytest.approx(3.0)
-    both = pools.levels([outlet_at(pools, -12.2, 1.0), outlet_at(pools, 12.2, 3.0)])
-    assert float(pools.standing_mm(both).max()) < 25 * SLOPE
+    # 3 mm deep to the sill, all of it by where balls are; the slope from the outlet on top
+    right = pool[pools.dexels.low_mm[pool] > 3]
+    assert pools.dexels.low_mm[right].min() == pytest.approx(3 + RADIUS, abs=0.02)
+    assert levels[right].max() == pytest.approx(6 + RADIUS + 12 * SLOPE, abs=0.2)
+    assert 250 < volume < 600
+    both = pools.levels(pools.outlets([LEFT, RIGHT]))
+    assert float(pools.standing_mm(both).max()) < RAISED_MM + 25 * SLOPE
 
 
 def test_an_outlet_above_the_floor_leaves_what_lies_below():
-    pools, _ = w_shaped()
-    levels = pools.levels([outlet_at(pools, -12.2, 2.0)])
-    left = pools.dexels.low_mm < 1.5
-    assert levels[left].min() == pytest.approx(2.0)
-    assert levels[left].max() <= 2.0 + SLOPE * 10 * 1.1
+    pools, _, _ = w_shaped()
+    levels = pools.levels(pools.outlets([channel_at(-10.0, 2.0)]))
+    deep = pools.dexels.low_mm < 1.5 + RADIUS
+    assert levels[deep].min() == pytest.approx(2 + RADIUS + RAISED_MM)
+    assert levels[deep].max() <= 2 + RADIUS + RAISED_MM + SLOPE * 10 * 1.1
 
 
 def test_filling_takes_the_pool_and_leaves_the_rest():
-    pools, void = w_shaped()
-    levels = pools.levels([outlet_at(pools, -12.2, 1.0)])
-    left = void - filling(pools, levels, _cells(pools))
-    taken = void.volume() - left.volume()
-    assert 300 < taken < 300 + 250 * 25 * SLOPE + 12
-    # Nothing is left under the sill on the far side
+    pools, space, void = w_shaped()
+    left = void - filling(space, pools.tops_mm([LEFT]))
+    # Nothing is left under the sill on the far side; the near one keeps all but a sloping film
     assert (left ^ box(9, 10, 5.9).translate((8, 0, 0))).volume() < 0.5
-
-
-def _cells(pools: Pools) -> np.ndarray:
-    from printprep.drains.space import _filled
-
-    return _filled(pools.dexels, pools.grid)
+    near = box(10, 10, 5).translate((-7.5, 0, 1))
+    assert (near - left).volume() < 100 * (RAISED_MM + 10 * SLOPE)
+    assert (left ^ box(40, 40, 4).translate((0, 0, 7))).volume() == pytest.approx(1000, abs=1)
 
 
 def test_a_bore_is_a_cylinder_with_a_round_end():
@@ -90,9 +102,6 @@ def test_a_bore_is_a_cylinder_with_a_round_end():
     assert channel.centre_mm == pytest.approx([6.4, 2.0, 22.8])
     # A rod of the stated diameter goes through
     rod = Manifold.cylinder(10, 1.999, 1.999, 256)
-    turned = rod.rotate((0, 0, 0))
-    from printprep.drains.channel import frame
-
     turned = rod.transform(np.column_stack([frame(axis), channel.inner_mm]))
     assert (turned - bored(channel)).volume() < 1e-6
 
@@ -105,5 +114,5 @@ def test_a_plug_fits_its_hole_and_ends_flush():
     assert low[2] == pytest.approx(0.0, abs=1e-9)
     assert high[2] == pytest.approx(2.0, abs=1e-6)
     assert high[0] == pytest.approx(1.75, abs=0.01)
-    tip = piece.slice(0.0 + 1e-6).area()
+    tip = piece.slice(1e-6).area()
     assert tip == pytest.approx(np.pi * (1.75 - TAPER_MM / 2) ** 2, rel=0.01)
