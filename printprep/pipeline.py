@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from printprep.density.outcome import PaperSolver
     from printprep.density.program import BasePolicy
     from printprep.profiles import Profile
-    from printprep.types import Model, Solid, Supports
+    from printprep.types import Fill, Model, Solid, Supports
 
 Objective = Literal["lean", "paper"]
-Fill = Literal["cavity", "infill"]
 
 
 def hollow(
@@ -82,6 +81,7 @@ def hollow(
     from printprep.drains.part import Drainer
     from printprep.infill.fill import infilled, slicer_at_hand
     from printprep.infill.options import check_fill
+    from printprep.infill.other_way import other_way
     from printprep.mesh.repair import repair
     from printprep.profiles import load_profile
     from printprep.settle import settle_lean, settle_paper
@@ -161,6 +161,8 @@ def hollow(
         )
         findings = run_rules(subject, settings)
         before = stability(solid.manifold, first_layer)
+    with clock.stage("other way"):
+        other = other_way(fill, solid, depths, settings, choice.base, asked)
     grams_per_mm3 = settings.material.density_g_cm3 / 1000
     return HollowResult(
         model=placed,
@@ -178,6 +180,7 @@ def hollow(
         advice=advice,
         supports=supports,
         drainage=found.drainage,
+        other_way=other,
         seconds=clock.seconds,
     )
 

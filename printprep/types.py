@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Severity = Literal["info", "warning", "error"]
 SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a file is written for
+Fill = Literal["cavity", "infill"]
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
@@ -363,6 +364,14 @@ class Infill:
         return x, y, z
 
 
+@dataclass(frozen=True)
+class OtherWay:
+    """What the fill that was not chosen would weigh, estimated."""
+
+    fill: Fill
+    mass_g: float
+
+
 @dataclass(frozen=True, eq=False)
 class HollowResult:
     """Everything ``hollow`` found out.  Masses are geometric volume times material density.
@@ -388,6 +397,7 @@ class HollowResult:
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
     infill: Infill | None = None
+    other_way: OtherWay | None = None
 
     @property
     def lean_deg(self) -> float:

@@ -8,19 +8,21 @@ area.  The figures are fits to G-code, see docs/infill.md.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from printprep.infill.keys import walls_mm
-from printprep.mesh.measure import arrays
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
     from numpy.typing import NDArray
 
+    from printprep.density.program import Program
     from printprep.profile_schema import Infill
     from printprep.profiles import Profile
+    from printprep.types import Solid
+    from printprep.voxel.depth import Depths
 
     Float = NDArray[np.float64]
 
@@ -42,23 +44,38 @@ def sparse_share(infill: Infill) -> float:
     return GYROID_SHARE * infill.density if infill.pattern == "gyroid" else 0.0
 
 
-def hanging(room: Manifold, infill: Infill) -> Float:
-    """(4,) moments of the infill that hangs under the ceilings of a room, mm³ and mm⁴."""
-    if infill.pattern != "lightning" or room.is_empty():
-        return np.zeros(4)
-    area, (x, y, z) = ceilings(room)
-    return LIGHTNING_MM * area * np.array([1.0, x, y, z - LIGHTNING_BELOW_MM])
+def hanging(ceiling: Float, infill: Infill) -> Float:
+    """(4,) moments of the infill that hangs under ceilings, mm³ and mm⁴.
 
-
-def ceilings(room: Manifold) -> tuple[float, Float]:
-    """Area in plan of all that faces a room from above, mm², and its middle (3,) mm.
-
-    Each ceiling above another counts.
+    ceiling : (4,) their area in plan, mm², and its first moments.
     """
-    vertices, faces = arrays(room)
-    corners = vertices[faces]
-    a, b, c = corners[:, 0, :2], corners[:, 1, :2], corners[:, 2, :2]
-    along, across = b - a, c - a
-    area = np.maximum(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0], 0.0) / 2
-    middle: Float = area @ corners.mean(axis=1) / area.sum()
-    return float(area.sum()), middle
+    if infill.pattern != "lightning":
+        return np.zeros(4)
+    lower = np.array([0.0, 0.0, 0.0, LIGHTNING_BELOW_MM * ceiling[0]])
+    result: Float = LIGHTNING_MM * (ceiling - lower)
+    return result
+
+
+def infill_program(solid: Solid, depths: Depths, profile: Profile) -> Program:
+    """The linear programs of a solid printed with the profile's infill.
+
+    A voxel that is filled adds what dense infill weighs more than sparse.
+    """
+    from printprep.density.program import Program
+    from printprep.infill.room import room_of
+
+    assert profile.infill is not None  # see :func:`printprep.infill.options.check_fill`
+    room = room_of(depths, shell_mm(profile))
+    interior = room.interior(solid, depths)
+    dense = replace(interior, moments=interior.moments * (1.0 - sparse_share(profile.infill)))
+    program = Program(solid.manifold, dense, profile)
+    body = interior.domain.body
+    ceilings = [
+        room.ceiling[:, body == number].sum(axis=1) for number in range(len(program.bodies))
+    ]
+    return program.weighing(
+        [
+            whole + hanging(ceiling, profile.infill)
+            for whole, ceiling in zip(program.moments, ceilings, strict=True)
+        ]
+    )

@@ -5,16 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.infill.estimate import hanging, shell_mm, sparse_share
+from printprep.infill.estimate import infill_program, shell_mm, sparse_share
 from printprep.infill.keys import layers, lines
 
 if TYPE_CHECKING:
-    from printprep.density.program import BasePolicy, Program
+    from printprep.density.program import BasePolicy
     from printprep.infill.settle import Filled
     from printprep.profiles import Profile
     from printprep.slicer.process import Slicer
     from printprep.stopwatch import Stopwatch
     from printprep.types import Finding, HollowResult, Lean, Model, Solid
+    from printprep.voxel.depth import Depths
 
 # The room is weighed, not cut: it need not be as smooth as a cavity.
 CELLS_PER_WALL = 2.0
@@ -37,6 +38,7 @@ def infilled(
     """
     from printprep.check import Subject, run_rules
     from printprep.check.registry import sorted_findings
+    from printprep.infill.other_way import other_way
     from printprep.infill.press import Press
     from printprep.infill.settle import settle_estimated, settle_weighed
     from printprep.stand.poses import stable_poses
@@ -46,7 +48,8 @@ def infilled(
     assert profile.infill is not None  # see :func:`printprep.infill.options.check_fill`
     sparse = sparse_share(profile.infill)
     with clock.stage("voxelize"):
-        program = program_of(solid, profile, resolution)
+        depths = measured_depths(solid, profile, resolution)
+        program = infill_program(solid, depths, profile)
     found: Filled | None = None
     press = None if slicer is None else Press(slicer, profile)
     if press is not None:
@@ -61,6 +64,8 @@ def infilled(
         with clock.stage("advice"):
             tilts = tuple(pose.tilt_deg for pose in stable_poses(solid.manifold))
             advice = Advice(program.growth_that_reaches(lean), tilts)
+    with clock.stage("other way"):
+        other = other_way("infill", solid, depths, profile, found.part.base, lean)
     grams = profile.material.density_g_cm3 / 1000
     with clock.stage("check"):
         subject = Subject(
@@ -94,6 +99,7 @@ def infilled(
         findings=sorted_findings(findings),
         advice=advice,
         seconds=clock.seconds,
+        other_way=other,
         infill=Infill(
             pattern=profile.infill.pattern,
             density=profile.infill.density,
@@ -108,37 +114,17 @@ def infilled(
     )
 
 
-def program_of(solid: Solid, profile: Profile, resolution: int) -> Program:
-    """The linear programs of a solid printed with the profile's infill, as estimated.
-
-    A voxel that is filled adds what dense infill weighs more than sparse.
-    """
-    from dataclasses import replace
-
-    from manifold3d import Manifold
-
-    from printprep.cavity.surface import isosurface
-    from printprep.density.program import Program
+def measured_depths(solid: Solid, profile: Profile, resolution: int) -> Depths:
+    """Depths below a solid's surface, fine where its infill begins."""
     from printprep.voxel.depth import measure_depths
-    from printprep.voxel.domain import weigh_interior
 
-    assert profile.infill is not None
-    wall_mm = shell_mm(profile)
-    depths = measure_depths(
+    return measure_depths(
         solid,
         resolution=resolution,
-        wall_mm=wall_mm,
+        wall_mm=shell_mm(profile),
         min_feature_mm=profile.min_feature_mm,
         margin_mm=profile.stability.base_growth_max_mm,
         cells_per_wall=CELLS_PER_WALL,
-    )
-    room = Manifold() if depths.field is None else isosurface(depths.field, wall_mm)
-    interior = weigh_interior(solid, depths, room)
-    dense = replace(interior, moments=interior.moments * (1.0 - sparse_share(profile.infill)))
-    program = Program(solid.manifold, dense, profile)
-    extra = [hanging(room ^ body, profile.infill) for body in program.bodies]
-    return program.weighing(
-        [whole + more for whole, more in zip(program.moments, extra, strict=True)]
     )
 
 

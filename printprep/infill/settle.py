@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 # A print that stands this much farther than it was solved for has ballast to spare.
 SPARE_DEG = 0.3
+# Out of reach, this near to what was solved for is near enough.
+NEAR_DEG = 0.1
 MOST_PRINTS = 5
 
 
@@ -78,9 +80,11 @@ def settle_weighed(
         found, lost_deg = _printed(solid, program, choice, sparse, press, lean)
         best = found if best is None else _better(best, found, lean)
         aim, tilt = found.density.aim_deg, tilt_toward(found.standing, lean)
-        if choice.reached < np.inf or aim is None or tilt is None:
+        if aim is None or tilt is None:
             break
-        if tilt >= lean.angle_deg and not (found.ballast and tilt > aim + SPARE_DEG):
+        # Out of reach, the beads' loss cannot be made up for
+        goal = lean.angle_deg if choice.reached == np.inf else aim - max(lost_deg, 0.0) - NEAR_DEG
+        if tilt >= goal and not (found.ballast and tilt > aim + SPARE_DEG):
             break
         program = _corrected(program, found.moments - choice.parts[0].moments)
         choice = program.solve(choice.base, lean, max(margin + lost_deg, 0.0))

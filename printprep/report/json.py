@@ -206,6 +206,9 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "supports": _supports(result),
         "drains": _drains(result.drainage),
         "infill": _infill(result.infill),
+        "other_way": None
+        if result.other_way is None
+        else {"fill": result.other_way.fill, "mass_g": number(result.other_way.mass_g, 3)},
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

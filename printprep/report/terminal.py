@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
     from printprep.tryout import TriedOut
-    from printprep.types import Drainage, Finding, HollowResult, Infill, Repair
+    from printprep.types import Drainage, Finding, HollowResult, Infill, OtherWay, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
@@ -58,6 +58,8 @@ def show_result(
     if result.drainage is not None and result.part.cavities:
         facts.add_row("drains", _drains(result.drainage))
     facts.add_row("base", _base(result))
+    if result.other_way is not None:
+        facts.add_row(*_other_way(result.other_way))
     proof = _proof(result)
     if proof is not None:
         facts.add_row("proof", proof)
@@ -199,6 +201,13 @@ def _infill(infill: Infill) -> str:
     if not infill.ballast:
         return f"{walls}; no ballast needed"
     return f"{walls}; ballast, printed dense, adds {_mass(infill.ballast_g)}"
+
+
+def _other_way(other: OtherWay) -> tuple[str, str]:
+    about = f"about {float(f'{other.mass_g:.2g}'):g} g"
+    if other.fill == "infill":
+        return "with infill", f"{about} (--fill infill)"
+    return "hollow", f"{about}, supports inside not counted (--fill cavity)"
 
 
 def _weighed(infill: Infill) -> str:

@@ -49,8 +49,12 @@ def weigh_interior(solid: Solid, depths: Depths, room: Manifold) -> Interior:
     ----------
     room : all that may become cavity, as a surface inside the solid.
     """
+    return interior_of(solid, depths, moments_in_cells(room, depths.grid, LINES))
+
+
+def interior_of(solid: Solid, depths: Depths, moments: Float) -> Interior:
+    """The same from (4, nx, ny, nz) moments of the room in every cell."""
     grid = depths.grid
-    moments = moments_in_cells(room, grid, LINES)
     share = moments[0] / grid.pitch_mm**3
     occupied = depths.coarse.depth_mm > 0
     free = share > 0

@@ -47,6 +47,14 @@ def test_a_cavity_needs_no_slicer(model: Path, capsys: pytest.CaptureFixture[str
     assert "--fill infill" in capsys.readouterr().err
 
 
+def test_the_summary_names_the_other_way(model: Path, capsys: pytest.CaptureFixture[str]):
+    line = ["hollow", str(model), "--base", "never", "--resolution", "32"]
+    assert run(line) == 0
+    assert "g (--fill infill)" in capsys.readouterr().out
+    assert run([*line, "-p", "resin-standard", "--no-drains"]) == 0
+    assert "--fill" not in capsys.readouterr().out
+
+
 def test_infill_is_for_filament_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert run(["profiles", "show", "resin-standard"]) == 0
     text = capsys.readouterr().out
@@ -70,4 +78,14 @@ def test_without_a_slicer_it_is_an_estimate_and_says_so(
     assert said["tilt_deg"] == pytest.approx(14.5, abs=0.01)
     assert said["cavities"]["count"] == 0
     assert [item["rule"] for item in said["findings"]] == ["infill-estimated"]
+    other = said["other_way"]
+    assert other["fill"] == "cavity"
+    assert run([*line, "--fill", "cavity", "--resolution", "32", "--json"]) == 0
+    hollow = json.loads(capsys.readouterr().out)
+    assert other["mass_g"] == pytest.approx(hollow["mass_g"], rel=0.02)
+    assert hollow["infill"] is None
+    assert hollow["other_way"] == {
+        "fill": "infill",
+        "mass_g": pytest.approx(said["mass_g"], rel=0.02),
+    }
     assert run([*line, "--slicer", "/no/such/slicer"]) == 6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from infill_parts import FOOT, SHEAR, TALL, leaning, solid_of, upright
 from manifold3d import Manifold
@@ -14,21 +14,23 @@ from printprep.infill.estimate import (
     GYROID_SHARE,
     LIGHTNING_BELOW_MM,
     LIGHTNING_MM,
-    ceilings,
     hanging,
+    infill_program,
     shell_mm,
     sparse_share,
 )
-from printprep.infill.fill import program_of
+from printprep.infill.fill import measured_depths
 from printprep.infill.keys import layers, lines, object_keys, walls_mm
+from printprep.infill.room import room_of
 from printprep.infill.settle import settle_estimated, standing_of
 from printprep.profiles import Profile, load_profile
 from printprep.types import Lean
+from printprep.voxel.depth import Depths
 
 
-def profile_with(**settings: object) -> Profile:
+def profile_with(**changes: object) -> Profile:
     return load_profile(
-        "fdm-pla-0.4", {key.replace("__", "."): value for key, value in settings.items()}
+        "fdm-pla-0.4", {key.replace("__", "."): value for key, value in changes.items()}
     )
 
 
@@ -52,40 +54,61 @@ def test_the_object_carries_its_infill_and_nothing_for_cavities():
     }
 
 
-@given(side=st.floats(1, 50), tall=st.floats(1, 50), up=st.floats(0, 20))
-def test_the_ceiling_of_a_box_is_its_top(side: float, tall: float, up: float):
-    area, middle = ceilings(upright(side, tall).translate((3, -4, up)))
-    assert area == pytest.approx(side**2, rel=1e-6)
-    np.testing.assert_allclose(middle, [3, -4, up + tall], atol=1e-5)
+def depths_of(manifold: Manifold) -> Depths:
+    return measured_depths(solid_of(manifold), load_profile(), 40)
+
+
+@settings(max_examples=10)
+@given(side=st.floats(12, 50), tall=st.floats(12, 50), level=st.floats(1.0, 1.3))
+def test_the_room_of_a_box_is_a_box_and_its_ceiling_the_top(side: float, tall: float, level: float):
+    depths = depths_of(upright(side, tall))
+    room = room_of(depths, level)
+    x, y, z = 0.0, 0.0, tall / 2
+    # A cell of the fine field across an edge of the room counts by distance: a hundredth of it
+    volume = (side - 2 * level) ** 2 * (tall - 2 * level)
+    found = room.volume.sum(axis=(1, 2, 3))
+    assert found[0] == pytest.approx(volume, rel=0.01)
+    np.testing.assert_allclose(found[1:] / found[0], [x, y, z], atol=0.02)
+    found = room.ceiling.sum(axis=(1, 2, 3))
+    assert found[0] == pytest.approx((side - 2 * level) ** 2, rel=0.01)
+    np.testing.assert_allclose(found[1:] / found[0], [x, y, tall - level], atol=0.05)
 
 
 def test_every_ceiling_counts_and_slopes_count_in_plan():
-    two = upright(10, 5) + upright(10, 5).translate((0, 0, 20))
-    area, middle = ceilings(two)
-    assert area == pytest.approx(200)
-    np.testing.assert_allclose(middle, [0, 0, 15], atol=1e-6)
-    area, _ = ceilings(Manifold.sphere(10, 256))
-    assert area == pytest.approx(np.pi * 100, rel=2e-3)
+    two = upright(20, 10) + upright(20, 10).translate((0, 0, 20))
+    ceiling = room_of(depths_of(two), 1.0).ceiling.sum(axis=(1, 2, 3))
+    assert ceiling[0] == pytest.approx(2 * 18**2, rel=0.01)
+    assert ceiling[3] / ceiling[0] == pytest.approx((9 + 29) / 2, abs=0.05)
+    ball = Manifold.sphere(15, 128).translate((0, 0, 15))
+    ceiling = room_of(depths_of(ball), 1.0).ceiling.sum(axis=(1, 2, 3))
+    assert ceiling[0] == pytest.approx(np.pi * 14**2, rel=0.01)
+    # The middle of a dome is two thirds up
+    assert ceiling[3] / ceiling[0] == pytest.approx(15 + 14 * 2 / 3, abs=0.1)
+
+
+def test_a_model_thinner_than_its_walls_has_no_room():
+    room = room_of(depths_of(upright(20, 1.5)), 1.0)
+    assert not room.volume.any() and not room.ceiling.any()
 
 
 def test_lightning_hangs_and_gyroid_fills():
-    room = upright(10, 30)
     lightning = profile_with().infill
     gyroid = profile_with(infill__pattern="gyroid").infill
     assert lightning is not None and gyroid is not None
+    ceiling = 100 * np.array([1.0, 2.0, 3.0, 30.0])
     mm3 = LIGHTNING_MM * 100
     np.testing.assert_allclose(
-        hanging(room, lightning), [mm3, 0, 0, mm3 * (30 - LIGHTNING_BELOW_MM)], atol=1e-6
+        hanging(ceiling, lightning), mm3 * np.array([1.0, 2.0, 3.0, 30 - LIGHTNING_BELOW_MM])
     )
     assert sparse_share(lightning) == 0.0
-    assert not hanging(room, gyroid).any()
+    assert not hanging(ceiling, gyroid).any()
     assert sparse_share(gyroid) == pytest.approx(GYROID_SHARE * 0.15)
-    assert not hanging(Manifold(), lightning).any()
 
 
 def program_for(pattern: str) -> tuple[Program, Profile]:
     profile = profile_with(infill__pattern=pattern, stability__lean_margin_deg=0.0)
-    return program_of(solid_of(leaning()), profile, 40), profile
+    solid = solid_of(leaning())
+    return infill_program(solid, measured_depths(solid, profile, 40), profile), profile
 
 
 @pytest.mark.parametrize("pattern", ["lightning", "gyroid"])

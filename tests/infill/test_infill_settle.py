@@ -9,7 +9,8 @@ import pytest
 from infill_parts import leaning, solid_of
 from manifold3d import Manifold
 
-from printprep.infill.fill import program_of
+from printprep.infill.estimate import infill_program
+from printprep.infill.fill import measured_depths
 from printprep.infill.press import Weighed
 from printprep.infill.settle import Filled, settle_weighed
 from printprep.mesh.measure import mass_properties
@@ -49,7 +50,8 @@ class OtherPress:
 
 def settle(press: OtherPress, lean_deg: float) -> Filled:
     profile = load_profile("fdm-pla-0.4", {"stability.lean_margin_deg": 0.1})
-    program = program_of(solid_of(leaning()), profile, 40)
+    solid = solid_of(leaning())
+    program = infill_program(solid, measured_depths(solid, profile, 40), profile)
     found = settle_weighed(
         solid_of(leaning()),
         program,

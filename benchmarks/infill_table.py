@@ -1,0 +1,179 @@
+"""Infill with ballast, against the ways a model is printed otherwise: all weighed in G-code.
+
+    python benchmarks/infill_table.py ../shared/models/catalogue.csv -o table.md [--size 100]
+
+Each model is sliced four ways with the same profile: with `--fill infill`; with the same walls and
+uniform lightning, and 15 % gyroid, without base or ballast; and hollow, with vaults inside.  Rows
+are kept in the file of --json as they are made, and taken from it when they are there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from verify_table import MODELS, catalogue
+
+from printprep import hollow
+from printprep.cavity.carve import make_part
+from printprep.errors import ToolError
+from printprep.infill.press import Press, Weighed
+from printprep.profiles import Profile, load_profile
+from printprep.slicer.process import Slicer, find_slicer
+from printprep.slicer.verify import verify
+from printprep.slicer.verify_rules import tilt_as_printed
+from printprep.types import Solid
+
+COLUMNS = (
+    ("model", "model", "{}"),
+    ("infill g", "infill_g", "{:.2f}"),
+    ("stands to °", "infill_deg", "{:.1f}"),
+    ("asked °", "asked_deg", "{:.1f}"),
+    ("of it ballast g", "ballast_g", "{:.2f}"),
+    ("base g", "base_g", "{:.2f}"),
+    ("slices", "slices", "{}"),
+    ("lightning g", "lightning_g", "{:.2f}"),
+    ("stands to °", "lightning_deg", "{:.1f}"),
+    ("15 % gyroid g", "gyroid_g", "{:.2f}"),
+    ("stands to °", "gyroid_deg", "{:.1f}"),
+    ("hollow g", "hollow_g", "{:.2f}"),
+    ("stands to °", "hollow_deg", "{:.1f}"),
+    ("infill / lightning", "ratio", "{:.3f}"),
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("catalogue", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
+    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
+    parser.add_argument("--profile", default="fdm-pla-0.4")
+    parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
+    parser.add_argument("--no-hollow", action="store_true", help="leave out the hollow part")
+    parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
+    chosen = parser.parse_args(arguments)
+    known = {}
+    if chosen.json and chosen.json.is_file():
+        known = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
+    rows = []
+    for model, up in catalogue(chosen.catalogue, chosen.only):
+        row = known.get(model.stem)
+        if row is None:
+            row = measure(model, up, chosen.size, chosen.profile, hollow_too=not chosen.no_hollow)
+        rows.append(row)
+        sys.stderr.write(json.dumps(row) + "\n")
+        chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
+        if chosen.json:
+            chosen.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return 0 if rows and all(row["stands"] for row in rows) else 1
+
+
+def measure(
+    model: Path, up: str, size_mm: float, profile: str, *, hollow_too: bool = True
+) -> dict[str, Any]:
+    """One row; the infill's own figures are those of ``verify``, a slice of its own."""
+    settings, slicer = load_profile(profile), find_slicer()
+    with tempfile.TemporaryDirectory() as folder:
+        made = hollow(model, up=up, size_mm=size_mm, profile=settings, fill="infill")
+        made.write(Path(folder) / "infill.3mf")
+        found = verify(Path(folder) / "infill.3mf")
+        tilt = tilt_as_printed(found.printed, made.lean)
+        asked = (
+            made.lean_deg
+            if made.density.aim_deg is None
+            else min(made.lean_deg, made.density.aim_deg)
+        )
+        assert made.infill is not None
+        row: dict[str, Any] = {
+            "model": model.stem,
+            "infill_g": found.printed.mass_g,
+            "infill_deg": tilt,
+            "asked_deg": made.lean_deg,
+            "reachable_deg": made.density.reachable_deg,
+            "stands": tilt >= asked,
+            "told_g": made.mass_g,
+            "findings": ", ".join(item.rule for item in (*made.findings, *found.findings)),
+            "estimated": made.infill.slicer is None,
+            "slices": made.infill.slices,
+            "ballast_g": made.infill.ballast_g,
+            "base_g": (made.part.outside.volume() - made.solid.manifold.volume())
+            * settings.material.density_g_cm3
+            / 1000,
+            "solid_g": made.solid_mass_g,
+            "cpu": sum(made.seconds.values()),
+        }
+        for pattern in ("lightning", "gyroid"):
+            weighed = uniform(made.solid, slicer, settings, pattern)
+            row[f"{pattern}_g"] = None if weighed is None else grams(weighed, settings)
+            row[f"{pattern}_deg"] = None if weighed is None else weighed.standing.tilt_deg
+        row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
+        row |= {"hollow_g": None, "hollow_deg": None, "hollow_told_g": None}
+        if hollow_too:
+            carved = hollow(model, up=up, size_mm=size_mm, profile=settings, self_support=True)
+            carved.write(Path(folder) / "hollow.3mf")
+            printed = verify(Path(folder) / "hollow.3mf").printed
+            row["hollow_g"], row["hollow_told_g"] = printed.mass_g, carved.mass_g
+            row["hollow_deg"] = tilt_as_printed(printed, carved.lean)
+    return row
+
+
+def uniform(solid: Solid, slicer: Slicer, profile: Profile, pattern: str) -> Weighed | None:
+    """The model as it is, with 15 % of one infill throughout; None where it cannot be sliced.
+
+    (A model that touches the bed in a point has no first layer.)
+    """
+    assert profile.infill is not None
+    infill = profile.infill.model_copy(update={"pattern": pattern, "density": 0.15})
+    press = Press(slicer, profile.model_copy(update={"infill": infill}))
+    try:
+        return press.weigh(make_part(solid, None, ()), ())
+    except ToolError:
+        return None
+
+
+def grams(weighed: Weighed, profile: Profile) -> float:
+    return float(weighed.moments[0]) * profile.material.density_g_cm3 / 1000
+
+
+def markdown(rows: Sequence[dict[str, Any]]) -> str:
+    """The rows as a table, and what they come to."""
+    lines = [
+        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
+        "|" + "---|" * len(COLUMNS),
+    ]
+    for row in rows:
+        cells = ["–" if row[key] is None else text.format(row[key]) for _, key, text in COLUMNS]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join([*lines, "", *summary(rows)]) + "\n"
+
+
+def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
+    """Means over the models whose lean can be reached, and for how many the others fall short."""
+    reached = [row for row in rows if row["reachable_deg"] is None]
+    both = [row for row in reached if row["lightning_g"] is not None]
+    lines = [
+        f"- With ballast {sum(r['infill_deg'] >= r['asked_deg'] for r in rows)} of {len(rows)} "
+        "stand at the lean asked for."
+    ]
+    for way in ("lightning", "gyroid", "hollow"):
+        short = [r for r in rows if r[f"{way}_deg"] is None or r[f"{way}_deg"] < r["asked_deg"]]
+        there = [r for r in reached if r[f"{way}_g"] is not None]
+        if there:
+            mean = np.mean([r["infill_g"] / r[f"{way}_g"] for r in there])
+            lines.append(
+                f"- {way}: {len(short)} of {len(rows)} fall short; with ballast "
+                f"{mean:.3f} × its grams on the mean over the {len(there)} that can stand."
+            )
+    if both:
+        lines.append(f"- Most against lightning: {max(r['ratio'] for r in both):.3f}.")
+    return lines
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
