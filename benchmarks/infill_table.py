@@ -58,69 +58,76 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--no-hollow", action="store_true", help="leave out the hollow part")
     parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
     chosen = parser.parse_args(arguments)
-    known = {}
+    kept: dict[str, dict[str, Any]] = {}
     if chosen.json and chosen.json.is_file():
-        known = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
+        kept = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
+    parts = (infill_figures,) if chosen.no_hollow else (infill_figures, hollow_figures)
     rows = []
     for model, up in catalogue(chosen.catalogue, chosen.only):
-        row = known.get(model.stem)
-        if row is None:
-            row = measure(model, up, chosen.size, chosen.profile, hollow_too=not chosen.no_hollow)
+        row = {"model": model.stem, **kept.get(model.stem, {})}
+        for figures in parts:
+            if figures.__name__ not in row:
+                found = figures(model, up, chosen.size, load_profile(chosen.profile))
+                row |= found | {figures.__name__: True}
         rows.append(row)
         sys.stderr.write(json.dumps(row) + "\n")
         chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
+        kept[model.stem] = row
         if chosen.json:
-            chosen.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+            text = json.dumps(list(kept.values()), indent=1) + "\n"
+            chosen.json.write_text(text, encoding="utf-8")
     return 0 if rows and all(row["stands"] for row in rows) else 1
 
 
-def measure(
-    model: Path, up: str, size_mm: float, profile: str, *, hollow_too: bool = True
-) -> dict[str, Any]:
-    """One row; the infill's own figures are those of ``verify``, a slice of its own."""
-    settings, slicer = load_profile(profile), find_slicer()
+def infill_figures(model: Path, up: str, size_mm: float, profile: Profile) -> dict[str, Any]:
+    """With ballast, as ``verify`` measures it in a slice of its own, and uniform."""
     with tempfile.TemporaryDirectory() as folder:
-        made = hollow(model, up=up, size_mm=size_mm, profile=settings, fill="infill")
+        made = hollow(model, up=up, size_mm=size_mm, profile=profile, fill="infill")
         made.write(Path(folder) / "infill.3mf")
         found = verify(Path(folder) / "infill.3mf")
-        tilt = tilt_as_printed(found.printed, made.lean)
-        asked = (
-            made.lean_deg
-            if made.density.aim_deg is None
-            else min(made.lean_deg, made.density.aim_deg)
-        )
-        assert made.infill is not None
-        row: dict[str, Any] = {
-            "model": model.stem,
-            "infill_g": found.printed.mass_g,
-            "infill_deg": tilt,
-            "asked_deg": made.lean_deg,
-            "reachable_deg": made.density.reachable_deg,
-            "stands": tilt >= asked,
-            "told_g": made.mass_g,
-            "findings": ", ".join(item.rule for item in (*made.findings, *found.findings)),
-            "estimated": made.infill.slicer is None,
-            "slices": made.infill.slices,
-            "ballast_g": made.infill.ballast_g,
-            "base_g": (made.part.outside.volume() - made.solid.manifold.volume())
-            * settings.material.density_g_cm3
-            / 1000,
-            "solid_g": made.solid_mass_g,
-            "cpu": sum(made.seconds.values()),
-        }
-        for pattern in ("lightning", "gyroid"):
-            weighed = uniform(made.solid, slicer, settings, pattern)
-            row[f"{pattern}_g"] = None if weighed is None else grams(weighed, settings)
-            row[f"{pattern}_deg"] = None if weighed is None else weighed.standing.tilt_deg
-        row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
-        row |= {"hollow_g": None, "hollow_deg": None, "hollow_told_g": None}
-        if hollow_too:
-            carved = hollow(model, up=up, size_mm=size_mm, profile=settings, self_support=True)
-            carved.write(Path(folder) / "hollow.3mf")
-            printed = verify(Path(folder) / "hollow.3mf").printed
-            row["hollow_g"], row["hollow_told_g"] = printed.mass_g, carved.mass_g
-            row["hollow_deg"] = tilt_as_printed(printed, carved.lean)
+    assert made.infill is not None
+    tilt = tilt_as_printed(found.printed, made.lean)
+    base_mm3 = made.part.outside.volume() - made.solid.manifold.volume()
+    row: dict[str, Any] = {
+        "slicer": found.slicer,
+        "infill_g": found.printed.mass_g,
+        "infill_deg": tilt,
+        "asked_deg": made.lean_deg,
+        "reachable_deg": made.density.reachable_deg,
+        "stands": tilt >= made.lean_deg,
+        "told_g": made.mass_g,
+        "told_deg": made.stability.tilt_deg,
+        "findings": ", ".join(item.rule for item in (*made.findings, *found.findings)) or "none",
+        "estimated": made.infill.slicer is None,
+        "slices": made.infill.slices,
+        "ballast_g": made.infill.ballast_g,
+        "base_g": base_mm3 * profile.material.density_g_cm3 / 1000,
+        "solid_g": made.solid_mass_g,
+        "seconds": sum(made.seconds.values()),
+    }
+    slicer = find_slicer()
+    for pattern in ("lightning", "gyroid"):
+        weighed = uniform(made.solid, slicer, profile, pattern)
+        row[f"{pattern}_g"] = None if weighed is None else grams(weighed, profile)
+        row[f"{pattern}_deg"] = None if weighed is None else weighed.standing.tilt_deg
+    row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
     return row
+
+
+def hollow_figures(model: Path, up: str, size_mm: float, profile: Profile) -> dict[str, Any]:
+    """With a cavity, its ceilings carried by vaults."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = hollow(model, up=up, size_mm=size_mm, profile=profile, self_support=True)
+        made.write(Path(folder) / "hollow.3mf")
+        printed = verify(Path(folder) / "hollow.3mf").printed
+    return {
+        "hollow_g": printed.mass_g,
+        "hollow_told_g": made.mass_g,
+        "hollow_deg": tilt_as_printed(printed, made.lean),
+        "vaults_g": None
+        if made.supports is None
+        else made.supports.added_mm3 * profile.material.density_g_cm3 / 1000,
+    }
 
 
 def uniform(solid: Solid, slicer: Slicer, profile: Profile, pattern: str) -> Weighed | None:
@@ -148,7 +155,7 @@ def markdown(rows: Sequence[dict[str, Any]]) -> str:
         "|" + "---|" * len(COLUMNS),
     ]
     for row in rows:
-        cells = ["–" if row[key] is None else text.format(row[key]) for _, key, text in COLUMNS]
+        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join([*lines, "", *summary(rows)]) + "\n"
 
@@ -162,8 +169,8 @@ def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
         "stand at the lean asked for."
     ]
     for way in ("lightning", "gyroid", "hollow"):
-        short = [r for r in rows if r[f"{way}_deg"] is None or r[f"{way}_deg"] < r["asked_deg"]]
-        there = [r for r in reached if r[f"{way}_g"] is not None]
+        short = [r for r in rows if r.get(f"{way}_deg") is None or r[f"{way}_deg"] < r["asked_deg"]]
+        there = [r for r in reached if r.get(f"{way}_g") is not None]
         if there:
             mean = np.mean([r["infill_g"] / r[f"{way}_g"] for r in there])
             lines.append(
