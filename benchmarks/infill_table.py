@@ -24,10 +24,12 @@ from printprep import hollow
 from printprep.cavity.carve import make_part
 from printprep.errors import ToolError
 from printprep.infill.press import Press, Weighed
+from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
 from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.verify import verify
 from printprep.slicer.verify_rules import tilt_as_printed
+from printprep.stand.stability import least
 from printprep.types import Solid
 
 COLUMNS = (
@@ -109,7 +111,7 @@ def infill_figures(model: Path, up: str, size_mm: float, profile: Profile) -> di
     for pattern in ("lightning", "gyroid"):
         weighed = uniform(made.solid, slicer, profile, pattern)
         row[f"{pattern}_g"] = None if weighed is None else grams(weighed, profile)
-        row[f"{pattern}_deg"] = None if weighed is None else weighed.standing.tilt_deg
+        row[f"{pattern}_deg"] = None if weighed is None else least(weighed.standings).tilt_deg
     row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
     return row
 
@@ -139,13 +141,13 @@ def uniform(solid: Solid, slicer: Slicer, profile: Profile, pattern: str) -> Wei
     infill = profile.infill.model_copy(update={"pattern": pattern, "density": 0.15})
     press = Press(slicer, profile.model_copy(update={"infill": infill}))
     try:
-        return press.weigh(make_part(solid, None, ()), ())
+        return press.weigh(make_part(solid, None, ()), (), bodies(solid.manifold))
     except ToolError:
         return None
 
 
 def grams(weighed: Weighed, profile: Profile) -> float:
-    return float(weighed.moments[0]) * profile.material.density_g_cm3 / 1000
+    return float(weighed.moments[:, 0].sum()) * profile.material.density_g_cm3 / 1000
 
 
 def markdown(rows: Sequence[dict[str, Any]]) -> str:

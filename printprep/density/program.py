@@ -145,10 +145,13 @@ class Program:
         return other
 
     def unfilled(self, base: Base | None) -> Float:
-        """(4,) moments of all bodies on a base, with none of their voxels filled."""
-        whole = sum((moments for _, _, moments in self.standing(base)), np.zeros(4))
-        result: Float = whole - self.interior.moments.sum(axis=1)
-        return result
+        """(k, 4) moments of what stands apart on a base, with none of its voxels filled."""
+        return np.stack(
+            [
+                moments - self._pool(cells)[1].moments.sum(axis=1)
+                for cells, _, moments in self.standing(base)
+            ]
+        )
 
     def growth_that_reaches(self, lean: Lean) -> float | None:
         """Least growth, in steps of half a millimetre up to 30 mm, whose base reaches a lean."""

@@ -151,14 +151,11 @@ def _only_estimated(has_slicer: bool) -> Finding:
     from printprep.slicer.child import INSTALL_HINT
     from printprep.types import Finding
 
-    why = (
-        "Its bodies do not touch, or nothing of it touches the bed, and a G-code tells only of one"
-        if has_slicer
-        else "No slicer was found"
-    )
+    why = "Something of it does not touch the bed" if has_slicer else "No slicer was found"
+    fix = "Give it a base (--base auto)" if has_slicer else INSTALL_HINT
     return Finding(
         "infill-estimated",
         "warning",
         f"{why}: what it weighs and how it stands is estimated, not measured in its G-code.",
-        None if has_slicer else INSTALL_HINT[0].upper() + INSTALL_HINT[1:] + ".",
+        f"{fix[0].upper()}{fix[1:]}.",
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.infill.item import item_of, middle_of_bed
+from printprep.infill.item import item_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -25,15 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
-    """What a print deposits, (4,) mm³ and mm⁴, and how it stands; in the part's coordinates."""
+    """What a print deposits, and how it stands, by what of it stands apart.
+
+    moments : (k, 4) mm³ and mm⁴, in the part's coordinates;  standings : one each.
+    """
 
     moments: Float
-    standing: Stability
-
-    @property
-    def centre_mm(self) -> tuple[float, float, float]:
-        """The centre of mass, heights from the bed."""
-        return self.standing.centre_of_mass_mm
+    standings: tuple[Stability, ...]
 
 
 class Press:
@@ -49,8 +47,10 @@ class Press:
         """How often the slicer was asked."""
         return len(self._known)
 
-    def weigh(self, part: Part, ballast: Sequence[Manifold]) -> Weighed:
+    def weigh(self, part: Part, ballast: Sequence[Manifold], apart: Sequence[Manifold]) -> Weighed:
         """Slice a part and measure it.
+
+        apart : what of it does not touch, a solid each; beads of a base go to the nearest.
 
         Raises ToolError where the slicer refuses it, InputError where it has no first layer.
         """
@@ -59,10 +59,11 @@ class Press:
         item = item_of(part.manifold, ballast, part.name, self.profile)
         content = write_3mf([item])
         if content not in self._known:
-            self._known[content] = self._measured(content, bottom_mm=-item.translation_mm[2])
+            at_mm = np.array(item.translation_mm)
+            self._known[content] = self._measured(content, at_mm, apart)
         return self._known[content]
 
-    def _measured(self, content: bytes, bottom_mm: float) -> Weighed:
+    def _measured(self, content: bytes, at_mm: Float, apart: Sequence[Manifold]) -> Weighed:
         from printprep.gcode.measure import measure_gcode
         from printprep.slicer.export import profile_settings
         from printprep.slicer.verify_rules import standing
@@ -71,16 +72,19 @@ class Press:
             file, gcode = Path(name) / "part.3mf", Path(name) / "part.gcode"
             file.write_bytes(content)
             self.slicer.slice(file, gcode, profile_settings(self.profile))
-            printed = measure_gcode(gcode)
-        stands = standing(printed)
-        middle = middle_of_bed(self.profile)
-        x, y, z = printed.centre_of_mass_mm
-        x, y = x - middle[0], y - middle[1]
-        return Weighed(
-            printed.volume_mm3 * np.array([1.0, x, y, z + bottom_mm]),
-            replace(
-                stands,
-                support_polygon_mm=stands.support_polygon_mm - middle,
-                centre_of_mass_mm=(x, y, z),
-            ),
-        )
+            bodies = [solid.translate(at_mm.tolist()) for solid in apart]
+            printed = measure_gcode(gcode, bodies=bodies)
+        mm3 = printed.volume_mm3 / printed.mass_g
+        moments, standings = [], []
+        for body in printed.bodies or (printed,):
+            found = standing(body)
+            centre = np.array(found.centre_of_mass_mm) - at_mm
+            moments.append(body.mass_g * mm3 * np.array([1.0, *centre]))
+            x, y, z = centre.tolist()
+            polygon = found.support_polygon_mm - at_mm[:2]
+            standings.append(
+                replace(
+                    found, support_polygon_mm=polygon, centre_of_mass_mm=(x, y, z + float(at_mm[2]))
+                )
+            )
+        return Weighed(np.stack(moments), tuple(standings))

@@ -14,19 +14,18 @@ import numpy as np
 
 from printprep.cavity.carve import make_part
 from printprep.density.outcome import density_of
+from printprep.mesh.measure import together
 from printprep.stand.contact import contact_of
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import balanced, least
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from manifold3d import Manifold
     from numpy.typing import NDArray
 
     from printprep.density.program import BasePolicy, Choice, Program
-    from printprep.infill.press import Press
-    from printprep.types import Density, Lean, Part, Plane, Solid, Stability
+    from printprep.infill.press import Press, Weighed
+    from printprep.types import Density, Lean, Part, Solid, Stability
 
     Float = NDArray[np.float64]
 
@@ -55,7 +54,14 @@ class Filled:
 def settle_estimated(solid: Solid, program: Program, choice: Choice, sparse: float) -> Filled:
     """A choice as it is weighed without a slicer; sparse : density of what is not filled."""
     moments = sum((part.moments for part in choice.parts), np.zeros(4))
-    return _filled(solid, program, choice, sparse, moments, standing_of(program, choice))
+    return Filled(
+        density=density_of(choice, program, sparse),
+        part=make_part(solid, choice.base, ()),
+        ballast=_ballast(program, choice),
+        moments=moments,
+        ballast_mm3=float(moments[0] - program.unfilled(choice.base).sum(axis=0)[0]),
+        standing=standing_of(program, choice),
+    )
 
 
 def settle_weighed(
@@ -63,42 +69,45 @@ def settle_weighed(
 ) -> Filled | None:
     """The lightest filling found whose print stands at the lean, measured in its G-code.
 
-    None where a G-code cannot tell: the bodies stand apart, which it prints as one, or nothing
-    touches the bed.
+    None where nothing of some body touches the bed: a slicer may refuse it.
     """
     choice = program.choose(policy, lean)
-    if len(choice.parts) > 1 or choice.parts[0].solution is None:
+    if any(part.solution is None for part in choice.parts):
         return None
-    bare = press.weigh(make_part(solid, choice.base, ()), ())
-    program = _corrected(program, bare.moments - program.unfilled(choice.base))
+    bare = press.weigh(make_part(solid, choice.base, ()), (), _apart(program, choice))
+    program = _corrected(program, choice, bare.moments - program.unfilled(choice.base))
+    unballasted = program
     margin = program.profile.stability.lean_margin_deg
-    # With several bodies another base might leave them apart.
+    # With several bodies another base might join them otherwise.
     one = len(program.bodies) == 1
     choice = program.choose(policy, lean) if one else program.solve(choice.base, lean, margin)
     best: Filled | None = None
     for _ in range(MOST_PRINTS):
-        found, lost_deg = _printed(solid, program, choice, sparse, press, lean)
+        density, part = density_of(choice, program, sparse), make_part(solid, choice.base, ())
+        ballast = _ballast(program, choice)
+        printed = press.weigh(part, ballast, _apart(program, choice))
+        added_mm3 = (printed.moments - unballasted.unfilled(choice.base)).sum(axis=0)[0]
+        found = Filled(
+            density=density,
+            part=part,
+            ballast=ballast,
+            moments=printed.moments.sum(axis=0),
+            ballast_mm3=float(added_mm3) if ballast else 0.0,
+            standing=least(printed.standings),
+        )
         best = found if best is None else _better(best, found, lean)
-        aim, tilt = found.density.aim_deg, tilt_toward(found.standing, lean)
+        aim, tilt = density.aim_deg, tilt_toward(found.standing, lean)
         if aim is None or tilt is None:
             break
-        # Out of reach, the beads' loss cannot be made up for
+        lost_deg = _by_sections(program, choice, printed, lean) - tilt
+        # Out of reach, what beads lose against the section cannot be made up for
         goal = lean.angle_deg if choice.reached == np.inf else aim - max(lost_deg, 0.0) - NEAR_DEG
-        if tilt >= goal and not (found.ballast and tilt > aim + SPARE_DEG):
+        if tilt >= goal and not (ballast and tilt > aim + SPARE_DEG):
             break
-        program = _corrected(program, found.moments - choice.parts[0].moments)
+        computed = np.stack([part.moments for part in choice.parts])
+        program = _corrected(program, choice, printed.moments - computed)
         choice = program.solve(choice.base, lean, max(margin + lost_deg, 0.0))
     return best
-
-
-def ballast_of(program: Program, planes: Sequence[Plane | None]) -> tuple[Manifold, ...]:
-    """The solids that print dense: each body below its plane."""
-    below = [
-        body.trim_by_plane([-value for value in plane.normal], -plane.offset_mm)
-        for body, plane in zip(program.bodies, planes, strict=True)
-        if plane is not None
-    ]
-    return tuple(solid for solid in below if not solid.is_empty())
 
 
 def standing_of(program: Program, choice: Choice) -> Stability:
@@ -110,50 +119,51 @@ def standing_of(program: Program, choice: Choice) -> Stability:
     return least(each)
 
 
-def _printed(
-    solid: Solid, program: Program, choice: Choice, sparse: float, press: Press, lean: Lean
-) -> tuple[Filled, float]:
-    """A choice as printed, and by how many degrees its beads stand less than its section."""
-    density = density_of(choice, program, sparse)
-    part = make_part(solid, choice.base, ())
-    weighed = press.weigh(part, ballast_of(program, density.planes))
-    found = _filled(solid, program, choice, sparse, weighed.moments, weighed.standing)
-    (_, section, _), *_ = program.standing(choice.base)
-    by_section = tilt_toward(balanced(contact_of(section), weighed.centre_mm), lean)
-    by_beads = tilt_toward(weighed.standing, lean)
-    assert by_section is not None and by_beads is not None  # a choice with a solution has contact
-    return found, by_section - by_beads
+def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean) -> float:
+    """The tilt angle of a print by the sections of its feet, instead of their beads."""
+    each = [
+        balanced(contact_of(section), standing.centre_of_mass_mm)
+        for (_, section, _), standing in zip(
+            program.standing(choice.base), printed.standings, strict=True
+        )
+    ]
+    tilt = tilt_toward(least(each), lean)
+    assert tilt is not None  # a choice with a solution has contact
+    return tilt
 
 
-def _filled(
-    solid: Solid,
-    program: Program,
-    choice: Choice,
-    sparse: float,
-    moments: Float,
-    standing: Stability,
-) -> Filled:
-    density = density_of(choice, program, sparse)
-    return Filled(
-        density=density,
-        part=make_part(solid, choice.base, ()),
-        ballast=ballast_of(program, density.planes),
-        moments=moments,
-        ballast_mm3=max(float(moments[0] - program.unfilled(choice.base)[0]), 0.0),
-        standing=standing,
-    )
+def _ballast(program: Program, choice: Choice) -> tuple[Manifold, ...]:
+    """The solids that print dense: each body below its plane."""
+    found = []
+    for part in choice.parts:
+        plane = None if part.solution is None else part.solution.plane
+        if plane is None:
+            continue
+        for cell in part.cells:
+            body = program.bodies[cell]
+            below = body.trim_by_plane([-value for value in plane.normal], -plane.offset_mm)
+            if not below.is_empty():
+                found.append(below)
+    return tuple(found)
 
 
-def _corrected(program: Program, difference: Float) -> Program:
-    """The program with (4,) more on its bodies, which stand as one."""
-    first, *others = program.moments
-    return program.weighing([first + difference, *others])
+def _apart(program: Program, choice: Choice) -> tuple[Manifold, ...]:
+    """What stands by itself, a solid each, in the order of the choice's parts."""
+    return tuple(together([program.bodies[cell] for cell in part.cells]) for part in choice.parts)
+
+
+def _corrected(program: Program, choice: Choice, difference: Float) -> Program:
+    """The program with (k, 4) more on what stands by itself; whichever body of it is the same."""
+    moments = list(program.moments)
+    for part, more in zip(choice.parts, difference, strict=True):
+        moments[part.cells[0]] = moments[part.cells[0]] + more
+    return program.weighing(moments)
 
 
 def _better(first: Filled, second: Filled, lean: Lean) -> Filled:
     """The lighter of two that stand, else the one that stands farther."""
     tilts = [tilt_toward(found.standing, lean) for found in (first, second)]
-    stands = [tilt is not None and tilt >= lean.angle_deg for tilt in tilts]
-    if all(stands):
+    one, other = (-np.inf if tilt is None else tilt for tilt in tilts)
+    if min(one, other) >= lean.angle_deg:
         return second if second.moments[0] < first.moments[0] else first
-    return second if (tilts[1] or -np.inf) > (tilts[0] or -np.inf) else first
+    return second if other > one else first

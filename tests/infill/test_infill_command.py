@@ -48,7 +48,7 @@ def test_a_cavity_needs_no_slicer(model: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_the_summary_names_the_other_way(model: Path, capsys: pytest.CaptureFixture[str]):
-    line = ["hollow", str(model), "--base", "never", "--resolution", "32"]
+    line = ["hollow", str(model), "--base", "never", "--resolution", "32", "--no-self-support"]
     assert run(line) == 0
     assert "g (--fill infill)" in capsys.readouterr().out
     assert run([*line, "-p", "resin-standard", "--no-drains"]) == 0
@@ -80,7 +80,9 @@ def test_without_a_slicer_it_is_an_estimate_and_says_so(
     assert [item["rule"] for item in said["findings"]] == ["infill-estimated"]
     other = said["other_way"]
     assert other["fill"] == "cavity"
-    assert run([*line, "--fill", "cavity", "--resolution", "32", "--json"]) == 0
+    assert (
+        run([*line, "--fill", "cavity", "--no-self-support", "--resolution", "32", "--json"]) == 0
+    )
     hollow = json.loads(capsys.readouterr().out)
     assert other["mass_g"] == pytest.approx(hollow["mass_g"], rel=0.02)
     assert hollow["infill"] is None
