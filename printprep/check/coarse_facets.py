@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 _SHARPEST_DEG, _FLATTEST_DEG = 40.0, 1.0
 # What an eye sees where layers are finer.
 _SEEN_MM = 0.1
-# So much of the surface must be coarse.
+# So much of the surface must be coarse, in so many facets: fewer are a shape with flat sides.
 LEAST_SHARE = 0.1
+LEAST_FACETS = 12
 
 
 @rule("coarse-facets")
@@ -32,10 +33,10 @@ def coarse_facets(subject: Subject, profile: Profile) -> Iterator[Finding]:
     chord; coarse is what misses by more than a layer, or than an eye sees.
     """
     limit = max(profile.printer.layer_height_mm, _SEEN_MM)
-    miss, area = _misses(*arrays(subject.outside))
+    miss, area, facet = _misses(*arrays(subject.outside))
     coarse = miss > limit
     share = float(area[coarse].sum() / area.sum()) if len(area) else 0.0
-    if share < LEAST_SHARE:
+    if share < LEAST_SHARE or len(np.unique(facet[coarse])) < LEAST_FACETS:
         return
     worst = float(np.percentile(miss[coarse], 50))
     yield Finding(
@@ -51,28 +52,26 @@ def coarse_facets(subject: Subject, profile: Profile) -> Iterator[Finding]:
     )
 
 
-def _misses(vertices: Float, faces: Int) -> tuple[Float, Float]:
-    """(m,) how far each facet misses a round surface, 0 where flat or sharp, and its area."""
+def _misses(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
+    """(m,) how far each triangle misses a round surface, 0 where flat or sharp; area; facet."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(normals, axis=1)
-    unit = np.divide(
-        normals, doubled[:, None], out=np.zeros_like(normals), where=doubled[:, None] > 0
-    )
+    unit = normals / np.maximum(doubled, np.finfo(np.float64).tiny)[:, None]
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     owner = np.repeat(np.arange(len(faces)), 3)
-    key = np.minimum(start, end) * len(vertices) + np.maximum(start, end)
-    order = np.argsort(key, kind="stable")
+    order = np.argsort(np.minimum(start, end) * len(vertices) + np.maximum(start, end))
     a, b = owner[order][::2], owner[order][1::2]
     length = np.linalg.norm(vertices[end] - vertices[start], axis=1)[order][::2]
     bend = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", unit[a], unit[b]), -1, 1)))
-    width = np.divide(
-        doubled[a] + doubled[b], 2 * length, out=np.zeros_like(length), where=length > 0
-    )
-    rises = np.where(
-        (bend > _FLATTEST_DEG) & (bend < _SHARPEST_DEG), width * np.radians(bend) / 8, 0
-    )
+    width = (doubled[a] + doubled[b]) / (2 * np.maximum(length, np.finfo(np.float64).tiny))
+    round_ = (bend > _FLATTEST_DEG) & (bend < _SHARPEST_DEG)
     miss = np.zeros(len(faces))
-    np.maximum.at(miss, a, rises)
-    np.maximum.at(miss, b, rises)
-    return miss, doubled / 2
+    for side in (a, b):
+        np.maximum.at(miss, side, np.where(round_, width * np.radians(bend) / 8, 0))
+    flat = bend <= _FLATTEST_DEG
+    graph = coo_matrix((np.ones(flat.sum()), (a[flat], b[flat])), shape=(len(faces),) * 2)
+    return miss, doubled / 2, connected_components(graph, directed=False)[1].astype(np.int64)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -15,30 +17,42 @@ if TYPE_CHECKING:
 TOLERANCE_MM = 0.01
 # Two sides of a gap this small are a fold.
 LEAST_MM2 = 5.0
+# Places closer than this are one gap.
+_LINK_MM = 2.0
+# A gap is about as wide everywhere: a tenth of it may be narrower than this share of its median.
+# In a crease, or under a ball on a plate, the tenth has a fifth of the median or less.
+_EVEN = 0.5
 
 
 @rule("gap")
 def gap(subject: Subject, profile: Profile) -> Iterator[Finding]:
-    """Prevents two surfaces from growing together: a hinge that sticks, letters that fill up.
+    """Tells of surfaces that may grow together: a hinge that sticks, letters that fill up.
 
-    Sides that are nearly parallel only; where surfaces meet in a crease nothing is lost.
+    Sides that are nearly parallel and stay apart; where surfaces meet in a crease nothing is lost.
     """
     limit = profile.min_gap_mm
     if limit is None:
         return
-    narrow = subject.narrow_below(limit - TOLERANCE_MM)
-    if narrow.total_mm2 < LEAST_MM2:
+    patches = [
+        patch
+        for patch in subject.narrow_below(limit - TOLERANCE_MM).patches(_LINK_MM)
+        if patch.total_mm2 >= LEAST_MM2
+        and np.percentile(patch.thick_mm, 10) >= _EVEN * np.median(patch.thick_mm)
+    ]
+    if not patches:
         return
+    narrow = max(patches, key=lambda patch: patch.total_mm2)
+    total = sum(patch.total_mm2 for patch in patches)
     least, place = narrow.thinnest
     yield Finding(
         "gap",
         "info",
         f"A gap of {least:.2f} mm may print closed: the profile asks for {limit:g} mm "
-        f"({narrow.total_mm2:.0f} mm² of its sides).",
+        f"({total:.0f} mm² of its sides).",
         "Widen the gap, or join what it parts.",
         value=least,
         limit=limit,
         unit="mm",
         at_mm=place,
-        area_mm2=narrow.total_mm2,
+        area_mm2=total,
     )

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @rule("non-manifold-edges")
 def non_manifold_edges(subject: Subject, profile: Profile) -> Iterator[Finding]:
-    """Tells where the surface touches itself along a line: programs part it in different ways."""
+    """Prevents programs from parting the surface in different ways where it touches itself."""
     del profile
     if subject.raw is None:
         return
@@ -27,7 +27,7 @@ def non_manifold_edges(subject: Subject, profile: Profile) -> Iterator[Finding]:
     x, y, z = subject.raw.vertices[crowded[0]].mean(axis=0).tolist()
     yield Finding(
         "non-manifold-edges",
-        "info",
+        "warning",
         f"At {len(crowded)} edges more than two triangles meet: bodies touch there along a line.",
         "Part them or let them overlap; `printprep hollow` does one or the other.",
         value=float(len(crowded)),

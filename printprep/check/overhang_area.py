@@ -1,4 +1,4 @@
-"""Rule: how much of the outside hangs over."""
+"""Rule: how much of the surface hangs over."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _SLACK_DEG = 0.01
 
 @rule("overhang-area")
 def overhang_area(subject: Subject, profile: Profile) -> Iterator[Finding]:
-    """Tells what supports will be needed outside; prevents the surprise, not the print.
+    """Tells what supports will be needed, outside and in cavities that are open.
 
     Surface that leans outward by more than the profile's overhang, above the first layer.  Powder
-    carries everything.
+    carries everything; ceilings of sealed cavities have a rule of their own.
     """
     if profile.overhang_deg >= 90:
         return
@@ -46,7 +46,7 @@ def overhang_area(subject: Subject, profile: Profile) -> Iterator[Finding]:
     yield Finding(
         "overhang-area",
         "info",
-        f"{area:.0f} mm² of its outside hang over by more than {profile.overhang_deg:g}°: a slicer "
+        f"{area:.0f} mm² of its surface hang over by more than {profile.overhang_deg:g}°: a slicer "
         "puts supports there.",
         "Another axis up (--up) or another pose (--pose) may need less.",
         value=area,

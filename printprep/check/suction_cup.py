@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
 # A vacuum of one bar on this area pulls with 10 N, as a layer of some square centimetres does.
 LEAST_MM2 = 100.0
-# A dish this shallow has let the air in again after a few layers.
-LEAST_DEEP_MM = 1.0
 
 
 @rule("suction-cup")
@@ -27,11 +25,7 @@ def suction_cup(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """
     if profile.process != "resin":
         return
-    cups = [
-        cup
-        for cup in subject.cups
-        if cup.area_mm2 >= LEAST_MM2 and cup.to_mm - cup.from_mm >= LEAST_DEEP_MM
-    ]
+    cups = [cup for cup in subject.cups if cup.area_mm2 >= LEAST_MM2]
     if not cups:
         return
     widest = max(cups, key=lambda cup: cup.area_mm2)

@@ -51,7 +51,10 @@ def wall_thickness(subject: Subject, profile: Profile) -> Iterator[Finding]:
 def _fins(subject: Subject, profile: Profile) -> Iterator[Finding]:
     limit = profile.wall_mm - TOLERANCE_MM
     thin = subject.thin_below(limit)
-    fins = thin.only(thin.wide_mm >= profile.min_feature_mm)
+    walls = thin.wide_mm >= profile.min_feature_mm
+    if subject.hollowed:  # a base that we made is as thick as it was meant to be
+        walls &= thin.middle[:, 2] > profile.stability.base_seat_mm
+    fins = thin.only(walls)
     if fins.total_mm2 < LEAST_MM2:
         return
     hardly = fins.only(fins.thick_mm < HARDLY * profile.wall_mm - TOLERANCE_MM)

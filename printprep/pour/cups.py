@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 # Cells along the longest side, where nothing asks for more.
 CELLS = 200
-# A cup that is shallower than this many cells may be the grid's own stairs.
-LEAST_LAYERS = 2
+# A dish this shallow has let the air in again after a few layers.
+LEAST_DEEP_MM = 1.0
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,8 @@ class Cup:
 
     from_mm, to_mm : heights at which it begins and at which it opens, or is closed over for good.
     opens : False where it never does: a sealed cavity.
-    area_mm2 : of its widest layer, on which the peel acts;  volume_mm3 : what it holds.
+    area_mm2 : on which the peel acts, over a millimetre of height or more;
+    volume_mm3 : what it holds.
     place_mm : (x, y, z) in its lowest layer, away from its sides: where a vent helps.
     """
 
@@ -52,7 +53,8 @@ def suction_cups(
     part : in printing position, z upward from the plate.
     pitch_mm : of the grid, a two-hundredth of the longest side without; walls and vents narrower
         than it are not seen.
-    least_mm2 : cups that are narrower than this everywhere are left out.
+    least_mm2 : cups that are narrower, or have this area over less than a millimetre of height,
+        are left out.
     """
     if part.is_empty():
         return ()
@@ -64,16 +66,19 @@ def suction_cups(
     found = basins(empty, outside, diagonal=False)
     origin = grid.origin_mm
     cells = np.bincount(found.pool.ravel(), minlength=len(found.layer))
+    lasting = max(2, round(LEAST_DEEP_MM / pitch))
     cups = []
     for number, spill in enumerate(found.spill.tolist()):
         pools = np.flatnonzero(found.basin == number)
         layers = found.layer[pools]
         per_layer = np.bincount(layers, weights=cells[pools])
-        area = float(per_layer.max()) * pitch**2
+        if np.count_nonzero(per_layer) < lasting:
+            continue
+        area = float(np.sort(per_layer)[-lasting]) * pitch**2
+        if area < least_mm2:
+            continue
         low = int(layers.min())
         high = int(layers.max()) + 1 if spill < 0 else spill
-        if area < least_mm2 or high - low < LEAST_LAYERS:
-            continue
         floor = pools[layers == low]
         i, j = np.nonzero(np.isin(found.pool[:, :, low], floor))
         x, y = _inmost(i, j)

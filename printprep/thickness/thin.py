@@ -50,6 +50,17 @@ class Thin:
         """Those places."""
         return Thin(self.middle[which], self.thick_mm[which], self.wide_mm[which], self.area_mm2)
 
+    def patches(self, link_mm: float) -> list[Thin]:
+        """The places in groups: what lies closer than this belongs together."""
+        if not len(self):
+            return []
+        from scipy.sparse.csgraph import connected_components
+        from scipy.spatial import cKDTree
+
+        tree = cKDTree(self.middle)
+        count, group = connected_components(tree.sparse_distance_matrix(tree, link_mm).tocsr())
+        return [self.only(group == number) for number in range(count)]
+
     @property
     def thinnest(self) -> tuple[float, tuple[float, float, float]]:
         """Least thickness, and where."""
@@ -72,7 +83,10 @@ def thin_places(part: Manifold, limit_mm: float) -> Thin:
 
 
 def gap_places(part: Manifold, limit_mm: float) -> Thin:
-    """Where empty space outside the material is narrower than a limit between parallel sides."""
+    """Where the space outside is narrower than a limit between nearly parallel sides.
+
+    Sides that meet, as where a ball lies on a plate, are among them; they taper to nothing.
+    """
     found = _mapped(part, limit_mm, gaps=True)
     middle, _, thick = _below(found, limit_mm)
     return Thin(middle, thick, np.full(len(thick), np.inf), found.area_mm2)

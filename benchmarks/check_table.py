@@ -1,0 +1,119 @@
+"""Try every rule on every closed-form case and write what was missed and what was a false alarm.
+
+    python benchmarks/check_table.py -o docs/checks.md
+
+The cases are those of tests/check/check_cases.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "check"))
+
+from check_cases import CASES, Case, found_in
+
+from printprep.check import rules
+from printprep.types import Finding
+
+_INTRO = """\
+# What is checked, and how far the checks can be trusted
+
+`printprep check FILE` runs every rule on any mesh or 3MF, whoever made it; `printprep hollow` runs
+the same rules on what it writes. A finding has a rule, a severity, a sentence for the one who
+prints, a way out for the one who changes the model, and where they make sense a value, its limit,
+a unit, a place in mm, an area and a volume (`--json`). `--fail-on warning|error` makes the exit
+code 1.
+
+## How it is measured
+
+- **Thickness.** At a point every square millimetre, the largest ball that touches the surface there
+  and that no facing side cuts into; a side faces where it is within 30° of parallel. Edges, corners
+  and facets are therefore not thin; a wedge is where it is sharper than 30°. Thin both ways across
+  is a pin, thin one way a wall. Around sealed cavities the wall is the exact distance of the two
+  surfaces. Against a plate, a shell of a sphere, a wedge and a cone the map is within 2 % or
+  0.02 mm everywhere (tests/thickness).
+- **Gaps.** The same in the empty space outside, where two sides stay apart; a crease is none.
+- **What runs out.** A ball as wide as the profile's drain is followed on a grid of a sixth of its
+  width, with the clearance measured on the triangles themselves where it decides: a hole of the
+  ball's own width lets it through, one 0.1 mm narrower does not. What it cannot leave at all is
+  sealed, or has too small a way out, whose width is measured. What it can leave only by rising, as
+  the part stands, is a pool: a warning inside a space twice as wide as its ways out, information in
+  the open, as in a mug. Pockets smaller than the ball are left out.
+- **Suction cups.** An empty region of a layer with no way to the outside through the layers up to
+  it; the plate shuts what opens to it. Layers are a two-hundredth of the longest side.
+- **Unsupported ceilings** follow the slicer's own acceptance rule, layer by layer.
+- **The file's own triangles** are looked at before anything is repaired.
+"""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown page")
+    arguments = parser.parse_args()
+    found = [(case, found_in(case)) for case in CASES]
+    arguments.output.write_text(page(found), encoding="utf-8")
+    wrong = sum(
+        {(item.rule, item.severity) for item in items} != case.wanted for case, items in found
+    )
+    return 1 if wrong else 0
+
+
+def page(found: list[tuple[Case, tuple[Finding, ...]]]) -> str:
+    return "\n".join([_INTRO, *_rules(found), "", *_cases(found), ""])
+
+
+def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
+    counts: dict[str, Counter[str]] = {rule: Counter() for rule in rules()}
+    for case, items in found:
+        wanted = {rule for rule, _ in case.wanted}
+        said = {item.rule for item in items}
+        for rule, count in counts.items():
+            count[
+                ("found" if rule in said else "missed")
+                if rule in wanted
+                else ("false" if rule in said else "silent")
+            ] += 1
+    lines = [
+        "## Every rule on every case",
+        "",
+        f"{len(found)} solids in closed form, most of them just on one side of a limit "
+        "(tests/check/check_cases.py; this page is written by benchmarks/check_table.py). "
+        "Rules without a failing case are about what `hollow` did.",
+        "",
+        "| rule | what for | found | missed | false alarms | rightly silent |",
+        "|---|---|---|---|---|---|",
+    ]
+    for rule, check in rules().items():
+        count = counts[rule]
+        what = " ".join((check.__doc__ or "").split("\n\n")[0].split())
+        lines.append(
+            f"| `{rule}` | {what} | {count['found']} | {count['missed']} | {count['false']} | "
+            f"{count['silent']} |"
+        )
+    return lines
+
+
+def _cases(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
+    lines = ["## The cases", "", "| solid | process | what was said |", "|---|---|---|"]
+    for case, items in found:
+        said = "; ".join(_said(item) for item in items) or "nothing"
+        lines.append(f"| {case.name} | {case.process} | {said} |")
+    return lines
+
+
+def _said(item: Finding) -> str:
+    text = f"{item.severity} `{item.rule}`"
+    if item.value is not None:
+        text += f" {item.value:.4g}"
+        text += f" of {item.limit:.4g}" if item.limit is not None else ""
+        text += f" {item.unit}" if item.unit else ""
+    return text
+
+
+if __name__ == "__main__":
+    sys.exit(main())
