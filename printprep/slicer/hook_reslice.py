@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.gcode.printed import Printed
+    from printprep.profiles import Profile
     from printprep.slicer.process import Slicer
     from printprep.slicer.verify_part import CarriedPart
     from printprep.types import HollowResult
@@ -65,21 +66,19 @@ def reslice(
     InputError : the G-code cannot be sliced anew without loss;  ToolError : the slicer failed, or
         what it made is not the part that was computed.  The G-code is then as it was.
     """
-    from printprep.pipeline import hollow
+    from printprep.mesh.repair import repair
+    from printprep.pipeline import hollow, placed_model
+    from printprep.profiles import load_profile
     from printprep.slicer.process import find_slicer
 
     before = measured(gcode)
     _refuse_what_would_be_lost(gcode, before)
     program = find_slicer(slicer)
-    result = hollow(
-        model,
-        profile=profile,
-        overrides=overrides_from(before.said.settings),
-        lean=lean,
-        progress=progress,
-        **(placement or {}),
-    )
-    if not same_size(np.ptp(np.reshape(result.solid.manifold.bounding_box(), (2, 3)), 0), before):
+    found = load_profile(profile, overrides_from(before.said.settings))
+    placed: dict[str, Any] = dict.fromkeys(("units", "scale", "height_mm", "size_mm"))
+    placed |= {"up": "+z", **(placement or {})}
+    solid = repair(placed_model(model, **placed)).manifold
+    if not same_size(np.ptp(np.reshape(solid.bounding_box(), (2, 3)), 0), before):
         raise InputError(
             f"{gcode.name}: prints something of another size than {model.name}; {_LEFT}",
             "give --up, --units and the size it was sliced in; turned or scaled in the slicer, "
@@ -88,10 +87,11 @@ def reslice(
     at = (before.bounds_mm.mean(axis=0)[0], before.bounds_mm.mean(axis=0)[1])
     with guarded(), tempfile.TemporaryDirectory(prefix="printprep-") as name:
         folder = Path(name)
-        settings = _density(before, result)
+        settings = _density(before, found)
         with progress.stage("Slicing the model as it is"):
-            plain = _sliced_as_it_is(program, result, at, settings, gcode, folder)
+            plain = _sliced_as_it_is(program, solid, at, settings, gcode, folder)
         _refuse_another(gcode, model, before, plain)
+        result = hollow(model, profile=found, lean=lean, progress=progress, **placed)
         with progress.stage("Slicing it hollow"):
             new, hooked = _sliced_hollow(program, result, at, settings, gcode, folder)
         _refuse_unsound(gcode, before, hooked)
@@ -183,16 +183,16 @@ def _refuse_unsound(gcode: Path, before: Printed, hooked: Hooked) -> None:
         raise ToolError(f"{gcode.name}: hollow, it is not as computed; {_LEFT}", " ".join(wrong))
 
 
-def _density(before: Printed, result: HollowResult) -> dict[str, str]:
+def _density(before: Printed, profile: Profile) -> dict[str, str]:
     said = numbers(before.said.settings, "filament_density")
     if any(said):
         return {}
-    return {"filament_density": f"{result.profile.material.density_g_cm3:g}"}
+    return {"filament_density": f"{profile.material.density_g_cm3:g}"}
 
 
 def _sliced_as_it_is(
     program: Slicer,
-    result: HollowResult,
+    solid: Manifold,
     at: tuple[float, float],
     settings: Mapping[str, str],
     load: Path,
@@ -201,7 +201,7 @@ def _sliced_as_it_is(
     from printprep.mesh.write import to_bytes
 
     model, made = folder / "model.stl", folder / "plain.gcode"
-    model.write_bytes(to_bytes(_moved(result.solid.manifold, at), ".stl"))
+    model.write_bytes(to_bytes(_moved(solid, at), ".stl"))
     program.slice(model, made, settings, load)
     return measured(made)
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -23,6 +25,7 @@ from printprep.slicer.hook_file import MARK
 from printprep.slicer.hook_setting import setting_line
 from printprep.slicer.process import find_slicer
 from printprep.slicer.sanitize import settings_ini
+from printprep.threemf.write import Item, Volume, write_3mf
 
 pytestmark = pytest.mark.slicer
 ROOT = Path(__file__).resolve().parents[2]
@@ -134,8 +137,6 @@ def test_more_than_the_model_is_not_lost(
     gcode = tmp_path / "mine.gcode"
     # The object's own keys say 100 %, the config in the G-code says 15 %
     with_keys = tmp_path / "solid-with-keys.3mf"
-    from printprep.threemf.write import Item, Volume, write_3mf
-
     mesh = trimesh.load(model)
     volume = Volume("block", mesh.vertices + np.array([100, 100, 12]), np.array(mesh.faces))
     keys = {"fill_density": "100%", "fill_pattern": "rectilinear"}
@@ -149,6 +150,82 @@ def test_more_than_the_model_is_not_lost(
     assert run(["hook", "--reslice", "--model", str(model), *smaller, str(gcode)]) == 3
     assert "another size" in capsys.readouterr().err
     assert gcode.read_bytes() == before
+
+
+def with_painted_supports(content: bytes) -> bytes:
+    """A 3MF with every triangle painted as PrusaSlicer's brush for supports paints it."""
+    painted = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(painted, "w") as new:
+        for name in old.namelist():
+            part = re.sub(
+                rb"(<triangle [^>]*?)/>", rb'\1 slic3rpe:custom_supports="4"/>', old.read(name)
+            )
+            new.writestr(name, part)
+    return painted.getvalue()
+
+
+def lossy(case: str, model: Path) -> tuple[bytes, dict[str, str], str]:
+    """A 3MF of which the G-code keeps less than slicing needs; settings; why it is refused."""
+    mesh = trimesh.load(model)
+    low, size = mesh.bounds[0], mesh.extents
+    points, faces = mesh.vertices - low + [80, 80, 0], np.array(mesh.faces)
+    whole = Volume("model", points, faces)
+    middle = points.mean(axis=0)
+    if case == "modifier":
+        core = Volume(
+            "m",
+            middle + (points - middle) * 0.6,
+            faces,
+            "ParameterModifier",
+            {"fill_density": "15%", "fill_pattern": "grid"},
+        )
+        return write_3mf([Item("i", [whole, core])]), {}, "prints differently"
+    if case == "painting":
+        on = {"support_material": "1", "support_material_auto": "0"}
+        return with_painted_supports(write_3mf([Item("i", [whole])])), on, "prints differently"
+    if case.startswith("objects"):
+        label = {"gcode_label_objects": "1" if case == "objects, labelled" else "0"}
+        both = write_3mf([Item("a", [whole]), Item("b", [whole], {}, (2 * size[0], 0, 0))])
+        return both, label, "2 objects" if case == "objects, labelled" else "another size"
+    assert case == "wipe tower"
+    scale = np.array([1, 1, 0.5])
+    low = Volume("low", points * scale, faces, settings={"extruder": "1"})
+    high = Volume("high", points * scale + [0, 0, size[2] / 2], faces, settings={"extruder": "2"})
+    settings = profile_settings(load_profile())
+    keys = ("nozzle_diameter", "filament_density", "filament_diameter", "extrusion_multiplier")
+    tower = {key: f"{settings[key]},{settings[key]}" for key in keys} | {
+        "filament_type": "PLA;PLA", "max_layer_height": "0.3,0.3", "wipe_tower": "1",
+        "single_extruder_multi_material": "1", "use_relative_e_distances": "1",
+    }  # fmt: skip
+    return write_3mf([Item("i", [low, high])]), tower, "wipe tower"
+
+
+@pytest.mark.parametrize(
+    "case", ["modifier", "painting", "objects, labelled", "objects", "wipe tower"]
+)
+def test_what_reslicing_would_lose_leaves_the_gcode_as_it_was(
+    case: str, leaning: Path, prusa_slicer: Path, tmp_path: Path, capsys
+):
+    content, changes, why = lossy(case, leaning)
+    source, gcode = tmp_path / "source.3mf", tmp_path / "mine.gcode"
+    source.write_bytes(content)
+    settings = {**profile_settings(load_profile()), **changes}
+    find_slicer(prusa_slicer).slice(source, gcode, settings)
+    before = gcode.read_bytes()
+    assert run(["hook", "--reslice", "--model", str(leaning), str(gcode)]) == 3
+    assert why in capsys.readouterr().err
+    assert gcode.read_bytes() == before
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.gcode", "source.3mf"]
+
+
+def test_the_slicer_shows_a_refusal(prusa_slicer: Path, leaning: Path, tmp_path: Path):
+    content, changes, why = lossy("objects, labelled", leaning)
+    source = tmp_path / "two.3mf"
+    source.write_bytes(content)
+    ini = config(tmp_path, "--reslice", "--model", str(leaning), **changes)
+    code, said, _ = slice_with_hook(prusa_slicer, source, ini)
+    assert code != 0
+    assert why in said
 
 
 def test_compared_with_its_part_wherever_it_lies(
