@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from printprep.drains.channel import bored
 from printprep.drains.place import Drained, Hole, drained
+from printprep.drains.space import around
 from printprep.mesh.written import as_written
 from printprep.types import Drain, Drainage, Part
 
@@ -14,8 +15,9 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
+    from printprep.drains.space import Space
     from printprep.profiles import Profile
-    from printprep.types import Float
+    from printprep.types import Base, Float
 
 
 class Drainer:
@@ -33,6 +35,7 @@ class Drainer:
         self.bores = Manifold()
         self.filled = Manifold()
         self._holes: tuple[Hole, ...] = ()
+        self._space: tuple[Base | None, Space] | None = None
 
     @property
     def taken_mm3(self) -> float:
@@ -51,6 +54,7 @@ class Drainer:
             wall_mm=self.profile.wall_mm,
             min_feature_mm=self.profile.min_feature_mm,
             known=self._holes,
+            space=self._around(part),
         )
         self._holes = found.holes
         self.bores = _united([bored(hole.channel) for hole in found.holes])
@@ -67,6 +71,12 @@ class Drainer:
             ),
             _drainage(found),
         )
+
+    def _around(self, part: Part) -> Space:
+        """The outside on a grid: it changes only with the base."""
+        if self._space is None or self._space[0] is not part.base:
+            self._space = part.base, around(part.outside, self.diameter_mm)
+        return self._space[1]
 
 
 def _united(solids: Sequence[Manifold]) -> Manifold:

@@ -22,7 +22,7 @@ from printprep.drains.fill import filling
 from printprep.drains.pools import Pools
 from printprep.drains.probe import channel_along
 from printprep.drains.search import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
-from printprep.drains.space import space_of
+from printprep.drains.space import Space, around, hollowed
 from printprep.voxel.distance import Surface
 
 if TYPE_CHECKING:
@@ -84,6 +84,7 @@ def drained(
     wall_mm: float,
     min_feature_mm: float,
     known: Sequence[Hole] = (),
+    space: Space | None = None,
 ) -> Drained:
     """Drain the cavities of a part.
 
@@ -93,13 +94,15 @@ def drained(
     diameter_mm : of the holes;  count : holes for each cavity, at least.  With two and more one of
         them is a vent, the rest are outlets; pools beyond those get outlets of their own.
     known : holes of a part like this one, kept where they still fit.
+    space : the outside on a grid, where it is at hand (:func:`printprep.drains.space.around`).
     """
     from manifold3d import Manifold, OpType
 
     if not cavities:
         return Drained((), (), 0.0, ())
     void = Manifold.batch_boolean(list(cavities), OpType.Add)
-    driller = Driller(outside, void, diameter_mm, wall_mm)
+    space = around(outside, diameter_mm) if space is None else space
+    driller = Driller(hollowed(space, void), outside, void, diameter_mm, wall_mm)
     driller.keep(known)
     driller.drill_outlets()
     driller.drill_vents(count)
@@ -111,13 +114,18 @@ class Driller:
     """Finds one hole after another in a part; ``drilled`` are those found so far."""
 
     def __init__(
-        self, outside: Manifold, void: Manifold, diameter_mm: float, wall_mm: float
+        self,
+        space: Space,
+        outside: Manifold,
+        void: Manifold,
+        diameter_mm: float,
+        wall_mm: float,
     ) -> None:
         self.diameter_mm = diameter_mm
         self.radius_mm = diameter_mm / 2
         self.wall_mm = wall_mm
         self.clearance_mm = wall_mm / 2
-        self.space = space_of(outside, void, diameter_mm)
+        self.space = space
         self.outside = Surface.of(outside)
         self.void = Surface.of(void)
         self.balls = balls_in(self.space, self.void, self.radius_mm)

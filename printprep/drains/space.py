@@ -6,7 +6,7 @@ below the plate is closed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from printprep.types import Bool, Float, Int
 
 # Cells along a hole's diameter, and the most along the part's longest side.
-CELLS_PER_DIAMETER = 6.0
+CELLS_PER_DIAMETER = 5.0
 MOST_CELLS = 200
 # Cells of air around the part, for holes to end in.
 MARGIN_CELLS = 8
@@ -68,11 +68,8 @@ class Space:
         return result
 
 
-def space_of(outside: Manifold, void: Manifold, diameter_mm: float) -> Space:
-    """A part on a grid fine enough for holes of a diameter.
-
-    outside : the part without its cavities;  void : the cavities, inside it.
-    """
+def around(outside: Manifold, diameter_mm: float) -> Space:
+    """A part without cavities on a grid fine enough for holes of a diameter."""
     from scipy.ndimage import distance_transform_edt
 
     box = np.array(outside.bounding_box())
@@ -85,7 +82,12 @@ def space_of(outside: Manifold, void: Manifold, diameter_mm: float) -> Space:
     body = filled(dexels_of(outside, grid), grid)
     deep = distance_transform_edt(body) - distance_transform_edt(~body)
     depth = ((deep - 0.5 * np.sign(deep)) * pitch).astype(np.float32)
-    return Space(grid, filled(dexels_of(void, grid), grid) & body, depth, open_air(~body))
+    return Space(grid, np.zeros_like(body), depth, open_air(~body))
+
+
+def hollowed(space: Space, void: Manifold) -> Space:
+    """The same part with cavities, which lie inside it."""
+    return replace(space, void=filled(dexels_of(void, space.grid), space.grid))
 
 
 def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:

@@ -72,7 +72,7 @@ def test_a_box_gets_an_outlet_at_its_floor_and_a_vent_at_its_top():
     assert outlet.axis[2] < 0 and outlet.low_mm > 0.9
     assert vent.inner_mm[2] > 20
     # Through the wall and no farther, and nothing left to trap
-    assert outlet.length_mm == pytest.approx(WALL / np.hypot(*outlet.axis[:2]), rel=0.05)
+    assert outlet.length_mm == pytest.approx(WALL / max(abs(outlet.axis[:2])), rel=0.05)
     assert len(part.decompose()) == 1 and part.genus() == 1
     assert trapped(part, DIAMETER) == () and suction_cups(part) == ()
 
