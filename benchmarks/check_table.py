@@ -34,9 +34,10 @@ code 1.
 - **Thickness.** At a point every square millimetre, the largest ball that touches the surface there
   and that no facing side cuts into; a side faces where it is within 30° of parallel. Edges, corners
   and facets are therefore not thin; a wedge is where it is sharper than 30°. Thin both ways across
-  is a pin, thin one way a wall. Around sealed cavities the wall is the exact distance of the two
-  surfaces. Against a plate, a shell of a sphere, a wedge and a cone the map is within 2 % or
-  0.02 mm everywhere (tests/thickness).
+  is a pin, thin one way a wall; a tenth is allowed for facets, and what lies flat on the bed does
+  not count. Around sealed cavities the wall is the exact distance of the two surfaces. Against a
+  plate, a shell of a sphere, a wedge and a cone the map is within 2 % or 0.02 mm everywhere
+  (tests/thickness).
 - **Gaps.** The same in the empty space outside, where two sides stay apart; a crease is none.
 - **What runs out.** A ball as wide as the profile's drain is followed on a grid of a sixth of its
   width, with the clearance measured on the triangles themselves where it decides: a hole of the

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
+from printprep.check.wall_thickness import FACETED
 from printprep.types import Finding
 
 if TYPE_CHECKING:
     from printprep.check.subject import Subject
     from printprep.profiles import Profile
 
-TOLERANCE_MM = 0.05
 # Less surface than this is a tip, and tips are meant to end.
 LEAST_MM2 = 5.0
 
@@ -23,8 +23,8 @@ def min_feature(subject: Subject, profile: Profile) -> Iterator[Finding]:
 
     A member counts where it is thinner than the profile's minimum feature both ways across.
     """
-    limit = profile.min_feature_mm - TOLERANCE_MM
-    thin = subject.thin_below(max(limit, profile.wall_mm - TOLERANCE_MM))
+    limit = FACETED * profile.min_feature_mm
+    thin = subject.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
     rods = thin.only((thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm))
     if rods.total_mm2 < LEAST_MM2:
         return
