@@ -57,19 +57,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
+    parser.add_argument("--lean", type=float, help="degrees asked for, instead of the profile's")
+    parser.add_argument("--base", default="auto", help="of the parts, as `printprep hollow` has it")
+    parser.add_argument("--no-infill", action="store_true", help="leave out all but hollow parts")
     parser.add_argument("--no-hollow", action="store_true", help="leave out the hollow part")
     parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
     chosen = parser.parse_args(arguments)
     kept: dict[str, dict[str, Any]] = {}
     if chosen.json and chosen.json.is_file():
         kept = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
-    parts = (infill_figures,) if chosen.no_hollow else (infill_figures, hollow_figures)
+    parts = [] if chosen.no_infill else [infill_figures]
+    parts += [] if chosen.no_hollow else [hollow_figures]
+    options = {"size_mm": chosen.size, "lean": chosen.lean, "base": chosen.base}
     rows = []
     for model, up in catalogue(chosen.catalogue, chosen.only):
         row = {"model": model.stem, **kept.get(model.stem, {})}
         for figures in parts:
             if figures.__name__ not in row:
-                found = figures(model, up, chosen.size, load_profile(chosen.profile))
+                found = figures(model, load_profile(chosen.profile), {"up": up, **options})
                 row |= found | {figures.__name__: True}
         rows.append(row)
         sys.stderr.write(json.dumps(row) + "\n")
@@ -78,13 +83,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if chosen.json:
             text = json.dumps(list(kept.values()), indent=1) + "\n"
             chosen.json.write_text(text, encoding="utf-8")
-    return 0 if rows and all(row["stands"] for row in rows) else 1
+    return 0 if rows and all(row.get("stands", True) for row in rows) else 1
 
 
-def infill_figures(model: Path, up: str, size_mm: float, profile: Profile) -> dict[str, Any]:
+def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> dict[str, Any]:
     """With ballast, as ``verify`` measures it in a slice of its own, and uniform."""
     with tempfile.TemporaryDirectory() as folder:
-        made = hollow(model, up=up, size_mm=size_mm, profile=profile, fill="infill")
+        made = hollow(model, profile=profile, fill="infill", **options)
         made.write(Path(folder) / "infill.3mf")
         found = verify(Path(folder) / "infill.3mf")
     assert made.infill is not None
@@ -116,10 +121,10 @@ def infill_figures(model: Path, up: str, size_mm: float, profile: Profile) -> di
     return row
 
 
-def hollow_figures(model: Path, up: str, size_mm: float, profile: Profile) -> dict[str, Any]:
+def hollow_figures(model: Path, profile: Profile, options: dict[str, Any]) -> dict[str, Any]:
     """With a cavity, its ceilings carried by vaults."""
     with tempfile.TemporaryDirectory() as folder:
-        made = hollow(model, up=up, size_mm=size_mm, profile=profile, self_support=True)
+        made = hollow(model, profile=profile, self_support=True, **options)
         made.write(Path(folder) / "hollow.3mf")
         printed = verify(Path(folder) / "hollow.3mf").printed
     return {
@@ -164,6 +169,7 @@ def markdown(rows: Sequence[dict[str, Any]]) -> str:
 
 def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
     """Means over the models whose lean can be reached, and for how many the others fall short."""
+    rows = [row for row in rows if "infill_g" in row]
     reached = [row for row in rows if row["reachable_deg"] is None]
     both = [row for row in reached if row["lightning_g"] is not None]
     lines = [
