@@ -10,11 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from collection import CatalogueModel
 from infill_parts import FOOT, TALL, leaning, mesh_of
+from infill_table import infill_figures, markdown
 from judges import read_strictly
 
 from printprep import hollow
 from printprep.cli.run import run
+from printprep.profiles import load_profile
 from printprep.slicer.process import find_slicer
 from printprep.slicer.verify import Verified, verify
 from printprep.threemf.read import read_3mf
@@ -122,3 +125,20 @@ def test_the_command_says_how_it_was_weighed(
     assert "15% gyroid, 3 perimeters; no ballast needed" in out
     assert "in the G-code of PrusaSlicer" in out
     assert Path("box-hollow.3mf").is_file()
+
+
+@pytest.mark.corpus
+def test_a_real_model_stands_for_the_grams_of_lightning(
+    dev_models: dict[str, CatalogueModel], prusa_slicer: Path
+):
+    """One row of the table in docs/infill.md, smaller."""
+    model = dev_models["spot_low_resolution"]
+    options = {"up": model.up, "size_mm": 50.0, "lean": 15.0, "base": "auto"}
+    row = infill_figures(model.path, load_profile(), options)
+    assert "printed" not in row["findings"] and not row["estimated"]
+    assert row["infill_deg"] >= 15.0
+    assert row["infill_deg"] == pytest.approx(row["told_deg"], abs=0.2)
+    assert row["infill_g"] == pytest.approx(row["told_g"], rel=0.005)
+    assert row["lightning_deg"] < 0 and row["gyroid_deg"] < 0
+    assert row["infill_g"] < 1.10 * row["lightning_g"] < row["gyroid_g"]
+    assert "1 of 1 stand" in markdown([{"model": model.path.stem, **row}])
