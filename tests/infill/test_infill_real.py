@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 import trimesh
 from collection import CatalogueModel
-from infill_parts import FOOT, TALL, leaning, mesh_of
+from infill_parts import FOOT, SHEAR, TALL, leaning, mesh_of, upright
 from infill_table import infill_figures, markdown
 from judges import read_strictly
 
 from printprep import hollow
 from printprep.cli.run import run
+from printprep.errors import UsageError
 from printprep.profiles import load_profile
 from printprep.slicer.process import find_slicer
 from printprep.slicer.verify import Verified, verify
@@ -61,6 +62,27 @@ def test_it_stands_as_measured_and_has_nothing_to_spare(made: HollowResult):
     assert made.infill.ballast_g > 0.1
     assert made.findings == ()
     assert made.part.cavities == ()
+
+
+def test_no_other_format_can_carry_it(made: HollowResult, tmp_path: Path):
+    with pytest.raises(UsageError, match="cannot carry infill"):
+        made.write(tmp_path / "part.stl")
+    assert not list(tmp_path.iterdir())
+
+
+def test_two_bodies_are_weighed_each_by_itself(prusa_slicer: Path):
+    """Only the leaning one of two needs ballast, and the weaker of them is the one told."""
+    two = leaning() + upright().translate((60.0, 0.0, 0.0))
+    found = hollow(
+        mesh_of(two), fill="infill", lean=LEAN, base="never", resolution=40, slicer=prusa_slicer
+    )
+    assert found.infill is not None and found.infill.slicer is not None
+    assert LEAN <= found.stability.tilt_deg <= LEAN + 0.5 + 0.3
+    (ballast,) = found.infill.ballast
+    x_low, x_high = ballast.bounding_box()[0], ballast.bounding_box()[3]
+    # On x = 0 lies the middle of the two, 40 mm from both ends
+    assert -40 - 1e-3 < x_low < x_high < -40 + FOOT + SHEAR
+    assert found.stability.centre_of_mass_mm[0] == pytest.approx(-40 + FOOT / 2 + 5, abs=1.5)
 
 
 def test_lib3mf_reads_one_solid_and_its_ballast(part: Path):
