@@ -59,11 +59,15 @@ def main() -> int:
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", help="file stems, all without")
     parser.add_argument("--no-slice", action="store_true")
-    parser.add_argument("--json", type=Path, help="the rows as JSON too")
+    parser.add_argument("--json", type=Path, help="the rows as JSON too; those in it are kept")
     arguments = parser.parse_args()
     profile = load_profile(arguments.profile)
-    rows = []
+    kept = arguments.json is not None and arguments.json.exists()
+    rows = json.loads(arguments.json.read_text(encoding="utf-8")) if kept else []
+    done = {row["model"] for row in rows}
     for path, up in catalogue(arguments.catalogue, arguments.only):
+        if path.stem in done:
+            continue
         try:
             row = measure(path, up, arguments.size, profile, not arguments.no_slice)
         except (PrintprepError, ArithmeticError) as error:

@@ -4,7 +4,13 @@ Notation: θ steepest overhang from the vertical, m least thickness across an ax
 longest way up from a place to a tip, φ ≤ θ lean of a column, S slenderness.
 
 A column's section is a horizontal disc.  Leaning, it is thinner across its axis by cos φ, so its
-radius is t(ℓ) / (2 cos φ) where t(ℓ) = max(m, ℓ / S) is its thickness across.
+radius is t(ℓ) / (2 cos φ) where t(ℓ) is its thickness across.
+
+Until its tip reaches the ceiling a column is a cantilever that the nozzle drags at with a force
+that does not depend on it.  Its end gives way by ℓ³ / t⁴ times a constant, so the thickness that
+keeps it as stiff as one of thickness m and length S m is
+
+    t(ℓ) = m max(1, ℓ / (S m))^(3/4).
 """
 
 from __future__ import annotations
@@ -21,8 +27,8 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Nowhere is more of a tree above than so many times its thickness there.  Slicers' tree supports
-# widen by 5° of diameter over length, which comes to 2 tan 2.5° = 1/11.5 of it.
+# Design guides for printed pins call for a length of no more than about ten to twelve times the
+# thickness; slicers' tree supports widen by 5° of diameter over length, 1/11.5 of it.
 SLENDERNESS = 12.0
 # Slicers thin out their outlines, PrusaSlicer by its resolution; so much less reach is built for.
 # (Without it 0.46 g of support were printed in a cow's cavity that the rule itself accepted.)
@@ -65,7 +71,8 @@ class Members:
 
     def across_mm(self, length_mm: Float) -> Float:
         """Half the thickness across the axis, a length below the farthest tip."""
-        half: Float = np.maximum(self.radius_mm, np.asarray(length_mm) / (2 * self.slenderness))
+        share = np.maximum(np.asarray(length_mm) / (self.slenderness * self.thickness_mm), 1.0)
+        half: Float = self.radius_mm * share**0.75
         return half
 
     def volume_mm3(self, above_mm: Float | float, length_mm: Float | float) -> Float:
@@ -75,9 +82,7 @@ class Members:
         return result
 
     def _from_tip(self, length: Float) -> Float:
-        slender = 2 * self.slenderness * self.radius_mm
-        thin = np.minimum(length, slender)
-        wide = np.maximum(length, slender)
-        cone = (wide**3 - slender**3) / (12 * self.slenderness**2)
-        result: Float = math.pi * (self.radius_mm**2 * thin + cone)
+        slender = self.slenderness * self.thickness_mm
+        wide = slender * (np.maximum(length / slender, 1.0) ** 2.5 - 1) / 2.5
+        result: Float = math.pi * self.radius_mm**2 * (np.minimum(length, slender) + wide)
         return result
