@@ -41,8 +41,9 @@ def command(
 ) -> int:
     """Check MODEL (STL, OBJ, PLY, 3MF or GLB) against a profile; nothing is written.
 
-    Watertight and oriented, walls around cavities, what is sealed inside, tilt angle against
-    --lean, contact with the bed, and whether the printer can hold it.
+    The file's own triangles, walls, pins and gaps, ceilings and overhangs, what is sealed inside or
+    does not run out, suction cups, tilt angle against --lean, contact with the bed, and whether the
+    printer can hold it.
     """
     from printprep.check.registry import at_or_above
     from printprep.cli.console import stdout_console, trouble_to_stderr
