@@ -181,12 +181,13 @@ def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
         "stand at the lean asked for."
     ]
     for way in ("lightning", "gyroid", "hollow"):
-        short = [r for r in rows if r.get(f"{way}_deg") is None or r[f"{way}_deg"] < r["asked_deg"]]
-        there = [r for r in reached if r.get(f"{way}_g") is not None]
+        tried = [row for row in rows if f"{way}_g" in row]
+        short = [r for r in tried if r[f"{way}_g"] is None or r[f"{way}_deg"] < r["asked_deg"]]
+        there = [r for r in tried if r in reached and r[f"{way}_g"] is not None]
         if there:
             mean = np.mean([r["infill_g"] / r[f"{way}_g"] for r in there])
             lines.append(
-                f"- {way}: {len(short)} of {len(rows)} fall short; with ballast "
+                f"- {way}: {len(short)} of {len(tried)} fall short; with ballast "
                 f"{mean:.3f} × its grams on the mean over the {len(there)} that can stand."
             )
     if both:
