@@ -3,7 +3,8 @@
     python benchmarks/dev_table.py ../shared/models/catalogue.csv -o table.md [--size 100] [--json]
 
 Each model goes through the installed command; its 3MF is then judged by lib3mf in strict mode, by
-prusa-slicer (--info, and a whole slice) and by libigl, none of which is printprep.
+prusa-slicer (--info, and a whole slice, whose G-code is measured) and by libigl, none of which is
+printprep.
 """
 
 from __future__ import annotations
@@ -23,10 +24,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 import igl
 import judges
+import verify_table
 
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
 from printprep.slicer.process import find_slicer
+from printprep.slicer.verify import settings_for, slice_and_measure
+from printprep.slicer.verify_part import carried_part
 
 COLUMNS = (
     ("model", "model", "{}"),
@@ -136,9 +140,10 @@ def judged(model: Path, up: str, size_mm: float, part: Path, slice_it: bool) -> 
         "sliced": "–",
     }
     if slice_it:
-        gcode = part.with_suffix(".gcode")
-        slicer.slice(part, gcode, {"filament_density": "1.24"})
-        row["sliced"] = "yes" if gcode.stat().st_size > 1000 else "no"
+        carried = carried_part(part)
+        settings = settings_for(carried, None)
+        printed, _ = slice_and_measure(slicer, carried, settings, None, part.parent)
+        row |= {"sliced": "yes", **verify_table.figures(carried, printed)}
     return row
 
 

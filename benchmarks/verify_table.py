@@ -20,7 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from printprep import hollow
-from printprep.slicer.verify import Verified, verify
+from printprep.gcode.printed import Printed
+from printprep.slicer.verify import verify
+from printprep.slicer.verify_part import CarriedPart
 from printprep.slicer.verify_rules import (
     centre_limit_mm,
     centre_offset_mm,
@@ -89,15 +91,22 @@ def measure(
         made = hollow(model, up=up, size_mm=size_mm, profile=profile, self_support=not bare)
         made.write(part)
         found = verify(part)
-    return {"model": model.stem, **figures(found), "seconds": time.perf_counter() - begun}
+    return {
+        "model": model.stem,
+        "slicer": found.slicer,
+        **figures(found.part, found.printed),
+        "support_in_cavities_mm3": None
+        if found.supported is None
+        else found.supported.support_in_cavities_mm3,
+        "findings": ", ".join(item.rule for item in found.findings) or "none",
+        "seconds": time.perf_counter() - begun,
+    }
 
 
-def figures(found: Verified) -> dict[str, Any]:
-    """What the table shows of a verified part."""
-    part, printed, supported = found.part, found.printed, found.supported
+def figures(part: CarriedPart, printed: Printed) -> dict[str, Any]:
+    """A part's figures, computed and printed, and how far they are apart."""
     said = printed.said.filament_mm3
     return {
-        "slicer": found.slicer,
         "bodies": len(part.bodies),
         "lean_deg": part.lean.angle_deg,
         "computed_g": part.mass_g,
@@ -109,9 +118,7 @@ def figures(found: Verified) -> dict[str, Any]:
         "tilt_computed_deg": part.tilt_deg,
         "tilt_printed_deg": tilt_as_printed(printed, part.lean),
         "in_cavities_mm3": printed.in_cavities_mm3,
-        "support_in_cavities_mm3": None if supported is None else supported.support_in_cavities_mm3,
         "filament_off_percent": None if not said else 100 * (printed.filament_mm3 / said - 1),
-        "findings": ", ".join(item.rule for item in found.findings) or "none",
         "print_hours": None if printed.said.seconds is None else printed.said.seconds / 3600,
     }
 
