@@ -31,9 +31,11 @@ DISPLAY_MM = 180
 PIXEL_MM = 0.25
 LAYER_MM = 0.25
 MARGIN = 3
-# Pixels and layers have corners: a region that is smaller than both is one of those.
+# Smaller regions are the pixels' corners, and one layer alone tells apart floors that differ by
+# hundredths of a millimetre.
 LEAST_MM2 = 2.0
 LEAST_MM3 = 1.0
+LEAST_LAYERS = 2
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class Shut:
     """What is shut in a part, by its layers.
 
     trapped_mm3 : joined to the outside through no layers at all.
-    cups : regions shut toward the plate, wider than 2 mm² in some layer and above 1 mm³.
+    cups : regions shut toward the plate, wider than 2 mm² in some layer, above 1 mm³, over two
+        layers and more.
     widest_mm2 : of all regions that are shut toward the plate, be they ever so small.
     """
 
@@ -129,10 +132,13 @@ def judged(empty: Bool, region: Bool | None = None) -> Shut:
     piece, count = label(shut, structure=generate_binary_structure(3, 3))
     cells = np.bincount(piece.ravel(), minlength=count + 1)
     widest = np.zeros(count + 1, dtype=int)
+    high = np.zeros(count + 1, dtype=int)
     for layer in piece:
-        widest = np.maximum(widest, np.bincount(layer.ravel(), minlength=count + 1))
+        area = np.bincount(layer.ravel(), minlength=count + 1)
+        widest, high = np.maximum(widest, area), high + (area > 0)
     cells[0] = widest[0] = 0
     real = (widest * pixel >= LEAST_MM2) & (cells * pixel * LAYER_MM >= LEAST_MM3)
+    real &= high >= LEAST_LAYERS
     return Shut(
         trapped_mm3=float((sealed(empty) & within).sum()) * pixel * LAYER_MM,
         cups=int(real.sum()),
