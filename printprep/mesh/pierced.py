@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 # Closer than this share of the size to an edge's end, it touches and does not pierce.
 _TOUCH = 1e-5
+# Nor does what an end lies this close beyond: slivers of a kernel's own tolerance reach so far.
+_SHALLOW = 5e-5
 # An edge that first meets a triangle at its own corner is followed on, so many times.
 _ROUNDS = 3
 
@@ -57,6 +59,7 @@ def pierced(vertices: Float, faces: Int) -> Pierced:
         going = going[inside & own]
         done[going] += touch
     found = np.flatnonzero(hit >= 0)
+    found = found[_beyond(vertices, edges[found], faces[hit[found]]) > _SHALLOW / _TOUCH * touch]
     piece = np.zeros(len(vertices), dtype=np.int64)
     for number, group in enumerate(components(faces, len(vertices))):
         piece[faces[group]] = number
@@ -67,3 +70,13 @@ def pierced(vertices: Float, faces: Int) -> Pierced:
         at_mm=at,
         apart=piece[edges[found, 0]] != piece[faces[hit[found], 0]],
     )
+
+
+def _beyond(vertices: Float, edges: Int, faces: Int) -> Float:
+    """(k,) how far the nearer end of each edge lies from the plane of its triangle."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    normal = np.cross(b - a, c - a)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(np.float64).tiny)[:, None]
+    ends: Float = np.abs(np.einsum("ij,ikj->ik", normal, vertices[edges] - a[:, None]))
+    nearer: Float = ends.min(axis=1)
+    return nearer
