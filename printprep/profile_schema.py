@@ -56,10 +56,21 @@ class Material(_Frozen):
 
 
 class Drain(_Frozen):
-    """Holes per sealed cavity; count 0 where the process leaves nothing inside to drain."""
+    """Holes per sealed cavity; count 0 where the process leaves nothing inside to drain.
+
+    count : holes of each cavity, at least;  cm3_per_hole : one more for every so much that it
+        holds, where what is inside does not run by itself (powder).
+    """
 
     diameter_mm: float | None = _bounded(0.3, 50.0, default=None)
     count: int = Field(default=0, ge=0, le=16, strict=True)
+    cm3_per_hole: float | None = _bounded(1.0, 1e6, default=None)
+
+    def holes_of(self, volume_mm3: float) -> int:
+        """Holes that a cavity of this volume gets, at least."""
+        if not self.cm3_per_hole:
+            return self.count
+        return max(self.count, math.ceil(volume_mm3 / 1000 / self.cm3_per_hole))
 
 
 class Stability(_Frozen):

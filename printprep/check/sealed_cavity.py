@@ -32,7 +32,10 @@ def sealed_cavity(subject: Subject, profile: Profile) -> Iterator[Finding]:
     total_mm3 = float(sum(void.volume() for void in voids))
     count = "A sealed cavity holds" if len(voids) == 1 else f"{len(voids)} sealed cavities hold"
     harmless = profile.process == "fdm"
-    fix = "Drill a drain and a vent into each, or print it with a process that leaves only air."
+    fix = (
+        "Drill a drain and a vent into each (`printprep hollow` does, given the solid model), or"
+        " print it with a process that leaves only air."
+    )
     yield Finding(
         "sealed-cavity",
         "info" if harmless else "error",

@@ -50,7 +50,7 @@ class Drainer:
             part.outside,
             part.cavities,
             diameter_mm=self.diameter_mm,
-            count=self.profile.drain.count,
+            count_of=self.profile.drain.holes_of,
             wall_mm=self.profile.wall_mm,
             min_feature_mm=self.profile.min_feature_mm,
             known=self._holes,

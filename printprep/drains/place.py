@@ -9,7 +9,7 @@ sucks at the vat.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -80,7 +80,7 @@ def drained(
     cavities: Sequence[Manifold],
     *,
     diameter_mm: float,
-    count: int,
+    count_of: Callable[[float], int],
     wall_mm: float,
     min_feature_mm: float,
     known: Sequence[Hole] = (),
@@ -91,8 +91,8 @@ def drained(
     Parameters
     ----------
     outside : the part without its cavities, on the plate.
-    diameter_mm : of the holes;  count : holes for each cavity, at least.  With two and more one of
-        them is a vent, the rest are outlets; pools beyond those get outlets of their own.
+    diameter_mm : of the holes;  count_of : holes for a cavity of so many mm³, at least.  With two
+        and more one of them at least is a vent; pools get outlets of their own.
     known : holes of a part like this one, kept where they still fit.
     space : the outside on a grid, where it is at hand (:func:`printprep.drains.space.around`).
     """
@@ -105,7 +105,7 @@ def drained(
     driller = Driller(hollowed(space, void), outside, void, diameter_mm, wall_mm)
     driller.keep(known)
     driller.drill_outlets()
-    driller.drill_vents(count)
+    driller.drill_vents(count_of)
     left = void - filling(driller.space, driller.tops_mm())
     return _assigned(driller.drilled, cavities_of(left, min_feature_mm), cavities)
 
@@ -156,8 +156,8 @@ class Driller:
             else:
                 self.drilled.append(("outlet", channel))
 
-    def drill_vents(self, count: int) -> None:
-        """A vent for every cavity with an outlet, and more up to ``count`` holes in each."""
+    def drill_vents(self, count_of: Callable[[float], int]) -> None:
+        """A vent for every cavity with an outlet, and more up to its count of holes."""
         reached = np.isfinite(self.pools.levels(self.pools.outlets(self._channels("outlet"))))
         bodies = [
             (role, int(self.balls.body[self.pools.over(channel)[0]]))
@@ -165,6 +165,7 @@ class Driller:
         ]
         for body in sorted({body for role, body in bodies if role == "outlet"}):
             outlets, vents = (bodies.count((role, body)) for role in ("outlet", "vent"))
+            count = count_of(float(self.pools.volume_mm3[self.balls.body == body].sum()))
             for _ in range(max(count - outlets, min(count - 1, 1)) - vents):
                 channel = self._vent_of(np.flatnonzero(reached & (self.balls.body == body)))
                 if channel is None:

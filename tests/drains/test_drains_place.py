@@ -14,6 +14,7 @@ from solids import box, cylinder
 from printprep.drains.channel import bored
 from printprep.drains.place import Drained, drained
 from printprep.pour import suction_cups, trapped
+from printprep.profile_schema import Drain as HoleCounts
 from printprep.types import Drain
 
 WALL = 2.0
@@ -25,7 +26,7 @@ def drain(outside: Manifold, *cavities: Manifold, count: int = 2) -> tuple[Manif
         outside,
         cavities,
         diameter_mm=DIAMETER,
-        count=count,
+        count_of=lambda volume_mm3: count,
         wall_mm=WALL,
         min_feature_mm=1.5,
     )
@@ -121,6 +122,22 @@ def test_more_holes_where_more_are_asked_for():
     assert len(mouths) == 4
     apart = np.linalg.norm(mouths[:, None] - mouths, axis=2)[np.triu_indices(4, 1)]
     assert apart.min() > 2 * DIAMETER
+
+
+@pytest.mark.parametrize(("side", "holes"), [(36, 2), (38, 3)])
+def test_powder_gets_a_hole_for_every_so_much_that_a_cavity_holds(side, holes):
+    """A cavity of 46.7 or 54.9 cm³ at a hole for every 25 cm³; the least count is 2."""
+    counts = HoleCounts(diameter_mm=DIAMETER, count=2, cm3_per_hole=25.0)
+    outside = box(side + 4, side + 4, side + 4)
+    found = drained(
+        outside,
+        [inner(side, side, side)],
+        diameter_mm=DIAMETER,
+        count_of=counts.holes_of,
+        wall_mm=WALL,
+        min_feature_mm=1.5,
+    )
+    assert len(found.holes) == holes
 
 
 def test_no_cavity_no_drain():

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Design guides for printed pins call for a length of no more than about ten to twelve times the
-# thickness; slicers' tree supports widen by 5° of diameter over length, 1/11.5 of it.
+# Our choice, from how slicers' tree supports widen: 5° of diameter over length is 1/11.5 of it.
 SLENDERNESS = 12.0
 # Slicers thin out their outlines, PrusaSlicer by its resolution; so much less reach is built for.
 # (Without it 0.46 g of support were printed in a cow's cavity that the rule itself accepted.)
