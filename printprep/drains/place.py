@@ -49,6 +49,8 @@ APART = 2.5
 FITS_MM = 0.1
 # Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
 RUNS = 0.4
+# A tip of a cavity that holds no such ball is shut by layers all the same: what drips out of it.
+DRIPS = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,10 +177,11 @@ class Driller:
     def tops_mm(self) -> Float:
         """(k,) how high every void cell has to be filled so that the rest drains, else −inf."""
         channels = self._channels("outlet")
-        small = balls_in(self.space, self.void, RUNS * self.radius_mm)
-        return np.maximum(
-            self.pools.tops_mm(channels), Pools(small, self.space.grid).tops_mm(channels)
-        )
+        tops = self.pools.tops_mm(channels)
+        for share in (RUNS, DRIPS):
+            balls = balls_in(self.space, self.void, share * self.radius_mm)
+            tops = np.maximum(tops, Pools(balls, self.space.grid).tops_mm(channels))
+        return tops
 
     def _channels(self, role: Role) -> list[Channel]:
         return [channel for other, channel in self.drilled if other == role]
