@@ -35,7 +35,8 @@ def filling(space: Space, tops_mm: Float) -> Manifold:
     top = np.full(grid.shape, -np.inf)
     top[space.void] = tops_mm
     z = grid.origin_mm[2] + pitch * np.arange(grid.shape[2])
-    cells = top > z - pitch / 2
+    # A floor between two centres belongs to the upper cell
+    cells = top > z - pitch
     if not cells.any():
         return Manifold()
     block = block_around(cells, int(INTO_WALL) + 2)
