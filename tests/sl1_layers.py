@@ -100,10 +100,13 @@ def empty_in_layers(part: Manifold) -> Bool:
 
 
 def sealed(empty: Bool) -> Bool:
-    """Empty pixels that are joined to the sides or to above through no layers."""
+    """Empty pixels that are joined to the sides, above or below through no layers.
+
+    What opens to the plate alone is shut by nothing but the plate: it is the model's own recess.
+    """
     piece, _ = label(empty)
     outer = np.zeros(empty.shape, dtype=bool)
-    outer[-1] = outer[:, [0, -1]] = outer[:, :, [0, -1]] = True
+    outer[[0, -1]] = outer[:, [0, -1]] = outer[:, :, [0, -1]] = True
     reached = np.zeros(int(piece.max()) + 1, dtype=bool)
     reached[piece[outer]] = True
     return empty & ~reached[piece]
