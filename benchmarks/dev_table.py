@@ -10,7 +10,6 @@ printprep.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import subprocess
 import sys
@@ -25,6 +24,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 import igl
 import judges
 import verify_table
+from rows import catalogue, markdown_lines
 
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
@@ -81,14 +81,6 @@ def main() -> int:
     if arguments.json:
         arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     return 0 if all(row["exit"] == 0 for row in rows) else 1
-
-
-def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
-    """The catalogue's dev models with the axis that is up."""
-    with path.open(encoding="utf-8", newline="") as handle:
-        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
-    models = [(path.parent / "dev" / row["file"], row["up"]) for row in rows]
-    return [pair for pair in models if not only or pair[0].stem in only]
 
 
 def measure(
@@ -155,13 +147,7 @@ def base_text(base: dict[str, Any] | None) -> str:
 
 
 def markdown(rows: list[dict[str, Any]]) -> str:
-    lines = [
-        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-    ]
-    for row in rows:
-        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
-        lines.append("| " + " | ".join(cells) + " |")
+    lines = markdown_lines(COLUMNS, rows)
     feasible = [row for row in rows if row["exit"] == 0 and row["reachable_deg"] is None]
     if feasible:
         ratio = np.mean([row["mass_ratio"] for row in feasible])

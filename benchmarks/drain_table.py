@@ -10,7 +10,6 @@ holes of the final mesh.  With --json, rows that a former run has found are kept
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 import time
@@ -23,6 +22,7 @@ from manifold3d import Manifold, OpType
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from drain_measures import hole_diameter_mm
+from rows import catalogue, markdown_lines
 from sl1_layers import judged_with_and_without
 
 from printprep.errors import PrintprepError
@@ -79,14 +79,6 @@ def main() -> int:
     return 0 if all("error" not in row for row in rows) else 1
 
 
-def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
-    """The catalogue's dev models with the axis that is up."""
-    with path.open(encoding="utf-8", newline="") as handle:
-        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
-    models = [(path.parent / "dev" / row["file"], row["up"]) for row in rows]
-    return [pair for pair in models if not only or pair[0].stem in only]
-
-
 def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]:
     """One row of the table."""
     start = time.process_time()
@@ -138,13 +130,7 @@ def stands(reachable_deg: float | None, tilt_deg: float | None, lean_deg: float)
 
 
 def markdown(rows: list[dict[str, Any]]) -> str:
-    lines = [
-        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-    ]
-    for row in rows:
-        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
-        lines.append("| " + " | ".join(cells) + " |")
+    lines = markdown_lines(COLUMNS, rows)
     return "\n".join(lines) + "\n"
 
 

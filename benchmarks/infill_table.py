@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from verify_table import MODELS, catalogue
+from rows import catalogue, markdown_lines
+from verify_table import MODELS
 
 from printprep import hollow
 from printprep.cavity.carve import make_part
@@ -161,13 +162,7 @@ def grams(weighed: Weighed, profile: Profile) -> float:
 
 def markdown(rows: Sequence[dict[str, Any]]) -> str:
     """The rows as a table, and what they come to."""
-    lines = [
-        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-    ]
-    for row in rows:
-        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
-        lines.append("| " + " | ".join(cells) + " |")
+    lines = markdown_lines(COLUMNS, rows)
     return "\n".join([*lines, "", *summary(rows)]) + "\n"
 
 

@@ -11,7 +11,6 @@ at 45°; the thinnest member is measured across the axis of each column's solid.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 import time
@@ -23,6 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from dev_rooms import room_of
+from rows import catalogue, markdown_lines
 from support_inside import support_inside_g
 
 from printprep.cavity.vaults import vaulted
@@ -80,14 +80,6 @@ def main() -> int:
     return 0 if all("error" not in row for row in rows) else 1
 
 
-def catalogue(path: Path, only: list[str] | None) -> list[tuple[Path, str]]:
-    """The catalogue's dev models with the axis that is up."""
-    with path.open(encoding="utf-8", newline="") as handle:
-        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
-    models = [(path.parent / "dev" / row["file"], row["up"]) for row in rows]
-    return [pair for pair in models if not only or pair[0].stem in only]
-
-
 def measure(
     path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool
 ) -> dict[str, Any]:
@@ -126,13 +118,7 @@ def measure(
 
 
 def markdown(rows: list[dict[str, Any]]) -> str:
-    lines = [
-        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-    ]
-    for row in rows:
-        cells = ["–" if row.get(key) is None else text.format(row[key]) for _, key, text in COLUMNS]
-        lines.append("| " + " | ".join(cells) + " |")
+    lines = markdown_lines(COLUMNS, rows)
     shares = [row["share"] for row in rows if "share" in row]
     if shares:
         lines += ["", f"Mean added share {np.mean(shares):.4f} of {len(shares)} rooms."]

@@ -10,14 +10,15 @@ domain cannot hold apart, or whose lean is out of reach, are in the table like a
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from rows import catalogue, markdown_lines
 
 from printprep import hollow
 from printprep.gcode.printed import Printed
@@ -73,14 +74,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0 if rows and all(agrees(row) for row in rows) else 1
 
 
-def catalogue(path: Path, only: Sequence[str]) -> Iterator[tuple[Path, str]]:
-    """The dev models of those names with the axis that is up, in the catalogue's order."""
-    with path.open(encoding="utf-8", newline="") as handle:
-        rows = [row for row in csv.DictReader(handle) if row["set"] == "dev"]
-    models = [(path.parent / "dev" / row["file"], row["up"]) for row in rows]
-    return ((model, up) for model, up in models if model.stem in only)
-
-
 def measure(
     model: Path, up: str, size_mm: float, profile: str, *, bare: bool = False
 ) -> dict[str, Any]:
@@ -130,13 +123,7 @@ def agrees(row: dict[str, Any]) -> bool:
 
 def markdown(rows: Sequence[dict[str, Any]]) -> str:
     """The rows as a table."""
-    lines = [
-        "| " + " | ".join(title for title, _, _ in COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
-    ]
-    for row in rows:
-        cells = ["–" if row[key] is None else text.format(row[key]) for _, key, text in COLUMNS]
-        lines.append("| " + " | ".join(cells) + " |")
+    lines = markdown_lines(COLUMNS, rows)
     return "\n".join(lines) + "\n"
 
 
