@@ -18,6 +18,7 @@ import numpy as np
 from printprep.cavity.carve import cavities_of
 from printprep.drains.balls import balls_in
 from printprep.drains.channel import Channel, bored
+from printprep.drains.dents import dents
 from printprep.drains.fill import filling
 from printprep.drains.pools import Pools
 from printprep.drains.probe import channel_along
@@ -49,8 +50,8 @@ APART = 2.5
 FITS_MM = 0.1
 # Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
 RUNS = 0.4
-# A tip of a cavity that holds no such ball is shut by layers all the same: what drips out of it.
-DRIPS = 0.0
+# Drops are followed on columns of this share of the grid's pitch.
+FINE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +109,7 @@ def drained(
     driller.keep(known)
     driller.drill_outlets()
     driller.drill_vents(count_of)
-    left = void - filling(driller.space, driller.tops_mm())
-    return _assigned(driller.drilled, cavities_of(left, min_feature_mm), cavities)
+    return _assigned(driller.drilled, cavities_of(driller.left_of(void), min_feature_mm), cavities)
 
 
 class Driller:
@@ -174,14 +174,15 @@ class Driller:
                     break
                 self.drilled.append(("vent", channel))
 
-    def tops_mm(self) -> Float:
-        """(k,) how high every void cell has to be filled so that the rest drains, else −inf."""
+    def left_of(self, void: Manifold) -> Manifold:
+        """The void without what does not drain: filled where balls stay, then where drops do."""
         channels = self._channels("outlet")
-        tops = self.pools.tops_mm(channels)
-        for share in (RUNS, DRIPS):
-            balls = balls_in(self.space, self.void, share * self.radius_mm)
-            tops = np.maximum(tops, Pools(balls, self.space.grid).tops_mm(channels))
-        return tops
+        runs = balls_in(self.space, self.void, RUNS * self.radius_mm)
+        tops = np.maximum(
+            self.pools.tops_mm(channels), Pools(runs, self.space.grid).tops_mm(channels)
+        )
+        left = void - filling(self.space, tops)
+        return left - dents(left, channels, FINE * self.space.grid.pitch_mm)
 
     def _channels(self, role: Role) -> list[Channel]:
         return [channel for other, channel in self.drilled if other == role]

@@ -45,8 +45,10 @@ class Outlet:
 class Pools:
     """The centres of a ball in a cavity as a network in which it rolls, and what it leaves."""
 
-    def __init__(self, balls: Balls, grid: Grid) -> None:
+    def __init__(self, balls: Balls, grid: Grid, *, diagonal: bool = True) -> None:
+        """diagonal : whether balls roll between columns that touch by an edge alone."""
         self.balls = balls
+        self._steps = 4 if diagonal else 2
         self.grid = grid
         self.dexels = dexels = balls.dexels
         self.volume_mm3 = balls.volume_mm3
@@ -60,7 +62,8 @@ class Pools:
         count = len(column)
         order = np.arange(count)
         ends: list[tuple[Int, Int, Float]] = []
-        for step, way in ((ny, 1.0), (1, 1.0), (ny + 1, 2**0.5), (ny - 1, 2**0.5)):
+        steps = ((ny, 1.0), (1, 1.0), (ny + 1, 2**0.5), (ny - 1, 2**0.5))
+        for step, way in steps[: self._steps]:
             first = np.searchsorted(column, column + step, side="left")
             last = np.searchsorted(column, column + step, side="right")
             times = last - first
@@ -136,7 +139,7 @@ class Pools:
 
         excluded : dexels whose pools are not asked for.
         """
-        label = self._connected(standing_mm > 0)
+        label = self.connected(standing_mm > 0)
         held = self.volume_mm3 * np.minimum(standing_mm / self._long_mm, 1.0)
         volume = np.bincount(label[label >= 0], weights=held[label >= 0])
         volume[label[excluded][label[excluded] >= 0]] = 0.0
@@ -169,7 +172,8 @@ class Pools:
         near &= self.dexels.high_mm >= point[2] - spare - NEAR_MM
         return np.flatnonzero(near)
 
-    def _connected(self, wet: Bool) -> Int:
+    def connected(self, wet: Bool) -> Int:
+        """(n,) the number of the pool that each wet dexel belongs to, else −1."""
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import connected_components
 
