@@ -48,6 +48,9 @@ MOST_TRIED = 25
 APART = 2.5
 # A hole is kept where its ball still fits but for this.
 FITS_MM = 0.1
+# What is this share of a hole's width lets pass what leaves through it: else low rooms, where a
+# ball has no way to rise, would fall apart into pools of their own.
+PASSES = 0.9
 # Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
 RUNS = 0.4
 # Drops are followed on columns of this share of the grid's pitch.
@@ -130,8 +133,9 @@ class Driller:
         self.space = space
         self.outside = Surface.of(outside)
         self.void = Surface.of(void)
-        self.balls = balls_in(self.space, self.void, self.radius_mm)
-        self.pools = Pools(self.balls, self.space.grid)
+        self.rests = Pools(balls_in(space, self.void, self.radius_mm), space.grid)
+        self.pools = Pools(balls_in(space, self.void, PASSES * self.radius_mm), space.grid)
+        self._pool_of_rest = self.pools.holding(self.rests.dexels)
         self.drilled: list[tuple[Role, Channel]] = []
 
     def keep(self, holes: Sequence[Hole]) -> None:
@@ -162,14 +166,14 @@ class Driller:
         """A vent for every cavity with an outlet, and more up to its count of holes."""
         reached = np.isfinite(self.pools.levels(self.pools.outlets(self._channels("outlet"))))
         bodies = [
-            (role, int(self.balls.body[self.pools.over(channel)[0]]))
+            (role, int(self.pools.balls.body[self.pools.over(channel)[0]]))
             for role, channel in self.drilled
         ]
         for body in sorted({body for role, body in bodies if role == "outlet"}):
             outlets, vents = (bodies.count((role, body)) for role in ("outlet", "vent"))
-            count = count_of(float(self.pools.volume_mm3[self.balls.body == body].sum()))
+            count = count_of(float(self.pools.volume_mm3[self.pools.balls.body == body].sum()))
             for _ in range(max(count - outlets, min(count - 1, 1)) - vents):
-                channel = self._vent_of(np.flatnonzero(reached & (self.balls.body == body)))
+                channel = self._vent_of(np.flatnonzero(reached & (self.pools.balls.body == body)))
                 if channel is None:
                     break
                 self.drilled.append(("vent", channel))
@@ -189,9 +193,11 @@ class Driller:
 
     def _outlet_of(self, pool: Int, volume_mm3: float) -> Channel | None:
         """The best outlet of a pool, from farther up where none begins lower."""
-        for band_mm in self._bands(pool):
-            balls = balls_at_rest(self.pools, pool, band_mm)
-            below = self.pools.held_below_mm3(pool, balls[:, 2])
+        rests = self._rests_in(pool)
+        spare_mm = self.radius_mm - self.pools.balls.radius_mm
+        for band_mm in self._bands(rests):
+            balls = balls_at_rest(self.rests, rests, band_mm)
+            below = self.pools.held_below_mm3(pool, balls[:, 2] - spare_mm)
             worth = volume_mm3 - below >= LEAST_FREED * volume_mm3
             ways = self._ways(balls[worth], FILLED_MM * below[worth], "outlet")
             channel = self._first_clean(ways)
@@ -199,18 +205,25 @@ class Driller:
                 return channel
         return None
 
-    def _bands(self, pool: Int) -> tuple[float, ...]:
+    def _rests_in(self, pool: Int) -> Int:
+        """Where in a pool a ball of the hole's full width can be."""
+        return np.flatnonzero(np.isin(self._pool_of_rest, pool))
+
+    def _bands(self, rests: Int) -> tuple[float, ...]:
         """Bands of height to look for balls at rest in, up to the first that holds them all."""
-        dexels = self.pools.dexels
-        high = float(np.ptp([dexels.low_mm[pool].min(), dexels.high_mm[pool].max()]))
+        if not len(rests):
+            return ()
+        dexels = self.rests.dexels
+        high = float(np.ptp([dexels.low_mm[rests].min(), dexels.high_mm[rests].max()]))
         return (*(band for band in BANDS_MM if band < high), high)
 
     def _vent_of(self, cavity: Int) -> Channel | None:
         """The best vent of a cavity, from farther down where none begins higher."""
         top = float(self.pools.dexels.high_mm[cavity].max())
+        rests = self._rests_in(cavity)
         mouths = np.array([channel.centre_mm for _, channel in self.drilled])
-        for band_mm in self._bands(cavity)[-2:]:
-            balls = balls_at_rest(self.pools, cavity, band_mm, top=True)
+        for band_mm in self._bands(rests)[-2:]:
+            balls = balls_at_rest(self.rests, rests, band_mm, top=True)
             away = np.linalg.norm(balls[:, None] - mouths, axis=2).min(axis=1)
             extra = DEPTH_MM * (top - balls[:, 2]) - AWAY_MM * away
             channel = self._first_clean(self._ways(balls, extra, "vent"))

@@ -20,6 +20,7 @@ import numpy as np
 if TYPE_CHECKING:
     from printprep.drains.balls import Balls
     from printprep.drains.channel import Channel
+    from printprep.drains.space import Dexels
     from printprep.types import Bool, Float, Grid, Int
 
 # Floors fall toward an outlet by this much of the way there: about half a degree.
@@ -171,6 +172,19 @@ class Pools:
         near &= self.dexels.low_mm <= point[2] + NEAR_MM
         near &= self.dexels.high_mm >= point[2] - spare - NEAR_MM
         return np.flatnonzero(near)
+
+    def holding(self, others: Dexels) -> Int:
+        """(m,) the dexel that each of some others, of a larger ball, lies in, −1 where none."""
+        own = self.dexels
+        middle = (others.low_mm + others.high_mm) / 2
+        if not len(own.column):
+            return np.full(len(middle), -1, dtype=np.int64)
+        # One key in the order of dexels: columns are farther apart than any two heights
+        apart = 1.0 + 2.0 * float(np.abs(np.concatenate([own.low_mm, middle])).max())
+        key = own.column * apart + own.low_mm
+        found = np.searchsorted(key, others.column * apart + middle, side="right") - 1
+        inside = (own.column[found] == others.column) & (own.high_mm[found] >= middle)
+        return np.where((found >= 0) & inside, found, -1)
 
     def connected(self, wet: Bool) -> Int:
         """(n,) the number of the pool that each wet dexel belongs to, else −1."""

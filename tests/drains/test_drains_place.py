@@ -99,6 +99,21 @@ def test_every_foot_of_a_table_gets_its_outlet():
     assert trapped(part, DIAMETER) == () and suction_cups(part) == ()
 
 
+def test_two_rooms_joined_by_a_gap_hardly_lower_than_the_hole_share_an_outlet():
+    """Rooms of 0.7 cm³, the gap between them on their floor and 0.1 mm lower than the hole.
+
+    Half of the gap is at the height of a layer of cells.
+    """
+    floor = 5.5 * DIAMETER / 5 - DIAMETER / 2 + 0.05
+    cavity = inner(8, 4, DIAMETER - 0.1, floor)
+    for x in (-9, 9):
+        cavity += inner(10, 10, 7, floor).translate((x, 0, 0))
+    part, found = drain(box(32, 14, 12), cavity)
+    assert sum(hole.role == "outlet" for hole in found.holes) == 1
+    assert found.filled_mm3 < 0.05 * cavity.volume()
+    assert trapped(part, DIAMETER - 0.5) == () and suction_cups(part) == ()
+
+
 def test_a_pit_too_small_for_a_hole_is_filled():
     pit = cylinder(3.0, 4.0).translate((0, 0, 4))
     cavity = inner(26, 26, 20, 8) + pit
