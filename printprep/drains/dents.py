@@ -18,7 +18,7 @@ from printprep.drains.pools import LEAST_MM, SLOPE, Pools
 from printprep.drains.space import Dexels, dexels_of
 from printprep.types import Grid
 from printprep.voxel.distance import DepthField
-from printprep.voxel.grid import block_around, cropped
+from printprep.voxel.grid import cropped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,17 +82,21 @@ class Floor:
         """The solid that raises the floor in these dexels, and meets it all around."""
         from scipy.ndimage import distance_transform_edt
 
-        cells = np.zeros(self.grid.shape, dtype=bool)
-        cells.reshape(-1)[self._cells(dent)[0]] = True
-        block = block_around(cells, MARGIN)
+        at = np.column_stack(np.unravel_index(self._cells(dent)[0], self.grid.shape))
+        # The grid's own margin is as wide
+        start, stop = at.min(axis=0) - MARGIN, at.max(axis=0) + MARGIN + 1
+        i, j, k = map(slice, start, stop)
+        block = (i, j, k)
         grid, pitch = cropped(self.grid, block), self.grid.pitch_mm
+        cells = np.zeros(grid.shape, dtype=bool)
+        cells[tuple((at - start).T)] = True
         dexel = self._dexel[block]
         void: Bool = dexel >= 0
         nearest = distance_transform_edt(~void, return_distances=False, return_indices=True)
         top = self.top_mm[dexel[tuple(nearest)]]
         z = grid.origin_mm[2] + pitch * np.arange(grid.shape[2])
         field = np.clip(top - z, -2 * pitch, 2 * pitch)
-        field = np.minimum(field, (INTO_WALL - distance_transform_edt(~cells[block])) * pitch)
+        field = np.minimum(field, (INTO_WALL - distance_transform_edt(~cells)) * pitch)
         return isosurface(DepthField(grid, field.astype(np.float32)), 0.0)
 
     def _cells(self, of: Int) -> tuple[Int, Int]:
