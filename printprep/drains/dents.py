@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 # A dent less deep than this is a film.
 FILM_MM = 0.03
+# Nothing runs where the ceiling is no higher than this above the floor: such cracks stay where one
+# filling ends below another.
+CRACK_MM = 0.3
 # Half of what floors fall by already: drops run by sides, up to √2 as far, and refill no floor.
 FALL = SLOPE / 2
 # Cells that a filling reaches beyond its own, into the wall around, and room for it in a grid.
@@ -51,10 +54,11 @@ def dents(void: Manifold, channels: Sequence[Channel], pitch_mm: float) -> Manif
     grid = _grid_over(void, pitch_mm)
     dexels = dexels_of(void, grid)
     nothing = np.zeros(len(dexels.column))
-    drops = Balls(0.0, dexels, nothing, nothing.astype(np.int64), nothing.astype(np.int64))
+    room = Dexels(dexels.column, dexels.low_mm, dexels.high_mm - CRACK_MM)
+    drops = Balls(0.0, room, nothing, nothing.astype(np.int64), nothing.astype(np.int64))
     pools = Pools(drops, grid, diagonal=False)
     levels = pools.levels(pools.outlets(channels), FALL)
-    standing = pools.standing_mm(levels)
+    standing = levels - dexels.low_mm
     label = pools.connected(standing > LEAST_MM)
     deep = np.unique(label[standing > FILM_MM])
     floor = Floor(grid, dexels, np.where(label >= 0, levels, -np.inf))
