@@ -1,13 +1,13 @@
 """Capitals: funnels, round discs that widen upward at θ, that together touch every ceiling sample.
 
 Notation: node n the middle of a funnel's lower disc, r its radius, q a sample, d = |q − n| seen
-from above, s = 0.06 mm what neighbouring funnels must overlap between samples.  A funnel carries q
+from above, s = 0.1 mm what neighbouring funnels must overlap between samples.  A funnel carries q
 where d ≤ r + (q_z − n_z) tan θ − s; over q it is q_z − n_z − max(0, d − r) / tan θ thick.
 
-Small patches of ceiling, each with a funnel of its own, are merged in pairs, as in agglomerative
-clustering (Ward 1963): those first whose common funnel saves most, a funnel's cost being what it
-fills, mostly under its samples, and a fixed volume for the column.  The result is flat in that
-volume; fewer funnels are quicker to build.
+Patches of ceiling, each with a funnel of its own, are evened out, each sample going to the funnel
+that reaches farthest beyond it, and merged in pairs where a common funnel saves volume: what a
+funnel costs is what it fills, mostly under its samples, and a fixed volume for the column.  The
+result is flat in that volume; fewer funnels are quicker to build.
 """
 
 from __future__ import annotations
@@ -26,12 +26,13 @@ if TYPE_CHECKING:
 # What a column is taken to cost before it is known.
 COLUMN_MM3 = 8.0
 # Side of the patches to begin with.
-PATCH_MM = 1.0
+PATCH_MM = 2.6
 NEIGHBOURS = 6
-MOST_MERGINGS = 12
+ROUNDS = 4
+EVENINGS = 2
 TIGHTENINGS = 3
-# Steps in search of a funnel's node: for every pair that may merge, and for what is built.
-_STEPS, _MORE_STEPS = 6, 12
+# Steps in search of a funnel's node: for groups, and for what is built.
+_STEPS, _MORE_STEPS = 8, 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,42 +43,104 @@ class Capitals:
     top_mm: Float
 
 
+@dataclass(frozen=True, eq=False)
+class _Groups:
+    """Sets of samples, (s, 3) the node of a funnel that carries each, and (s,) what it costs."""
+
+    sets: Sets
+    node_mm: Float
+    cost_mm3: Float
+
+    @staticmethod
+    def of(sets: Sets, nodes: Float, members: Members, area_mm2: float) -> _Groups:
+        return _Groups(sets, nodes, COLUMN_MM3 + sets.volume_mm3(nodes, members, area_mm2))
+
+
 def cover(samples: Float, members: Members, area_mm2: float) -> Capitals:
     """Capitals for all samples (n, 3), each of which stands for ``area_mm2`` of ceiling."""
     if len(samples) == 0:
         return Capitals(np.zeros((0, 3)), np.zeros(0))
-    return _tightened(_merged(samples, members, area_mm2), samples, members)
+    return _tightened(_grouped(samples, members, area_mm2), samples, members)
 
 
-def _merged(samples: Float, members: Members, area_mm2: float) -> Float:
+def _grouped(samples: Float, members: Members, area_mm2: float) -> Float:
     """(k, 3) nodes of funnels that carry all samples."""
+    groups = _patches(samples, members, area_mm2)
+    for _ in range(ROUNDS):
+        groups = _evened(groups, members, area_mm2)
+        fewer = _merged(groups, members, area_mm2)
+        if fewer is None:
+            return groups.node_mm
+        groups = fewer
+    return _evened(groups, members, area_mm2).node_mm
+
+
+def _patches(samples: Float, members: Members, area_mm2: float) -> _Groups:
+    """Samples by the cell of space they lie in: rows of cells, every other shifted by a half."""
     cells = np.floor(samples / PATCH_MM).astype(np.int64)
-    _, patch, sizes = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-    samples = samples[np.argsort(np.ravel(patch), kind="stable")]
-    sets = Sets.of(samples, sizes)
-    middles = np.add.reduceat(samples[:, :2], sets.start) / sizes[:, None]
-    nodes = sets.highest(middles, members, _MORE_STEPS)
-    cost = COLUMN_MM3 + sets.volume_mm3(nodes, members, area_mm2)
-    for _ in range(MOST_MERGINGS):
-        one, other = _neighbours(nodes, sets.tops_mm)
-        joint = Sets.of(*_joined(sets, sizes, one, other))
-        share = (sizes[one] / (sizes[one] + sizes[other]))[:, None]
-        between = share * nodes[one, :2] + (1 - share) * nodes[other, :2]
-        common = joint.highest(between, members, _STEPS)
-        together = COLUMN_MM3 + joint.volume_mm3(common, members, area_mm2)
-        pairs = _matched(one, other, cost[one] + cost[other] - together)
-        if not len(pairs):
-            break
-        one, other = one[pairs], other[pairs]
-        nodes[one], cost[one] = common[pairs], together[pairs]
-        into = np.arange(len(nodes))
-        into[other] = one
-        label = into[sets.owner]
-        kept = np.delete(np.arange(len(nodes)), other)
-        sizes = np.bincount(label)[kept]
-        sets = Sets.of(sets.points_mm[np.argsort(label, kind="stable")], sizes)
-        nodes, cost = nodes[kept], cost[kept]
-    return nodes
+    cells[:, 0] = np.floor(samples[:, 0] / PATCH_MM + cells[:, 1] % 2 / 2)
+    label = np.unique(cells, axis=0, return_inverse=True)[1]
+    sets = _by_label(samples, np.ravel(label))
+    sizes = np.bincount(sets.owner)
+    middles = np.add.reduceat(sets.points_mm[:, :2], sets.start) / sizes[:, None]
+    return _Groups.of(sets, sets.highest(middles, members, _STEPS), members, area_mm2)
+
+
+def _evened(groups: _Groups, members: Members, area_mm2: float) -> _Groups:
+    """Each sample to the funnel that reaches farthest beyond it, then each funnel anew (Lloyd
+    1982): groups grow round, and of one size."""
+    sets, nodes = groups.sets, groups.node_mm
+    for _ in range(EVENINGS):
+        used, label = np.unique(_farthest_reaching(sets, nodes, members), return_inverse=True)
+        sets, before = _by_label(sets.points_mm, label), nodes[used]
+        nodes = sets.highest(before[:, :2], members, _STEPS)
+        nodes = np.where((before[:, 2] > nodes[:, 2])[:, None], before, nodes)
+    return _Groups.of(sets, nodes, members, area_mm2)
+
+
+def _farthest_reaching(sets: Sets, nodes: Float, members: Members) -> Int:
+    """(m,) the funnel for every sample, among those near it; its own where none carries it."""
+    from scipy.spatial import cKDTree
+
+    points, count = sets.points_mm, min(NEIGHBOURS, len(nodes))
+    near = cKDTree(nodes).query(points, count)[1].reshape(len(points), count)
+    away = points[:, None, :] - nodes[near]
+    d = np.hypot(away[..., 0], away[..., 1])
+    beyond = members.radius_mm - OVERLAP_MM + away[..., 2] * members.tan - d
+    beyond[(away[..., 2] < 0) | (away[..., 2] > RISE_MM) | (d > REACH_MM)] = -np.inf
+    best = beyond.argmax(axis=1)
+    row = np.arange(len(points))
+    result: Int = np.where(beyond[row, best] >= 0, near[row, best], sets.owner)
+    return result
+
+
+def _merged(groups: _Groups, members: Members, area_mm2: float) -> _Groups | None:
+    """Groups of which pairs became one where that saves volume, those first that save most."""
+    sets, nodes, cost = groups.sets, groups.node_mm.copy(), groups.cost_mm3
+    sizes = np.bincount(sets.owner)
+    one, other = _neighbours(nodes, sets.tops_mm)
+    joint = Sets.of(*_joined(sets, sizes, one, other))
+    share = (sizes[one] / (sizes[one] + sizes[other]))[:, None]
+    between = share * nodes[one, :2] + (1 - share) * nodes[other, :2]
+    common = joint.highest(between, members, _STEPS)
+    together = COLUMN_MM3 + joint.volume_mm3(common, members, area_mm2)
+    apart = cost[one] + cost[other]
+    gain = np.subtract(apart, together, out=np.zeros_like(apart), where=np.isfinite(together))
+    pairs = _matched(one, other, gain)
+    if not len(pairs):
+        return None
+    one, other = one[pairs], other[pairs]
+    nodes[one] = common[pairs]
+    into = np.arange(len(nodes))
+    into[other] = one
+    label = np.cumsum(into == np.arange(len(nodes)))[into] - 1
+    kept = np.delete(nodes, other, axis=0)
+    return _Groups.of(_by_label(sets.points_mm, label[sets.owner]), kept, members, area_mm2)
+
+
+def _by_label(points: Float, label: Int) -> Sets:
+    """Points (m, 3) in sets by their labels (m,), which leave no number out."""
+    return Sets.of(points[np.argsort(label, kind="stable")], np.bincount(label))
 
 
 def _neighbours(nodes: Float, tops: Float) -> tuple[Int, Int]:

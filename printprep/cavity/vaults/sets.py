@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from printprep.types import Float, Int
 
 # What neighbouring funnels must overlap between samples.
-OVERLAP_MM = 0.06
+OVERLAP_MM = 0.1
 # A funnel carries nothing farther from its axis, nor higher above its node.
 REACH_MM = 3.6
 RISE_MM = 5.0
