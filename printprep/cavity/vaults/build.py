@@ -81,26 +81,25 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
         landings = Landings.of(dexels, members, float(capitals.node_mm[:, 2].max()))
         raise_columns(capitals.node_mm, dexels, landings, members, forest)
         set_feet(forest, dexels, members)
-    pieces = funnels(capitals, members) + columns(forest, members)
-    cavity = _without(room, pieces, members)
+    wide, narrow = funnels(capitals, members), columns(forest, members)
+    cavity = _without(room, wide + narrow, members)
     flagged = list(unsupported_ceilings(cavity, rule, PHASES).patches)
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
         more = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
-        cavity = _without(cavity, more, members)
-        flagged = list(_around(more, cavity, rule).patches)
-        pieces += more
+        cavity = _without(cavity, sum(more, []), members)
+        flagged = list(_around(sum(more, []), cavity, rule).patches)
+        wide, narrow = wide + more[0], narrow + more[1]
     left = Unsupported(tuple(flagged))
-    widening = sum(piece.high_radius_mm > piece.low_radius_mm for piece in pieces)
     return Vaults(
         cavity=cavity,
-        solids=room - cavity if pieces else Manifold(),
+        solids=room - cavity if wide else Manifold(),
         samples=len(samples),
-        capitals=widening,
-        columns=len(pieces) - widening,
+        capitals=len(wide),
+        columns=len(narrow),
         added_mm3=float(room.volume() - cavity.volume()),
-        thinnest_mm=min((piece.across_mm for piece in pieces), default=None),
+        thinnest_mm=min((piece.across_mm for piece in wide + narrow), default=None),
         unsupported_mm2=left.area_mm2,
         islands=left.islands,
     )

@@ -111,7 +111,7 @@ def _best_partner(
     left, _ = landings.way(where)
     alone, _ = landings.way(there)
     above, above_others = forest.above_mm[tip], np.array([forest.above_mm[k] for k in others])
-    mine, theirs = _weighed(where - here), _weighed(where - there)
+    mine, theirs = (np.linalg.norm(where - place, axis=1) for place in (here, there))
     trunk = np.maximum(above + mine, above_others + theirs)
     total = members.volume_mm3(above, mine) + members.volume_mm3(above_others, theirs)
     total += members.volume_mm3(trunk, left) - members.volume_mm3(above_others, alone)
@@ -133,17 +133,10 @@ def _best_axis(tip: int, cost: float, members: Members, forest: Forest) -> int |
     reach = np.flatnonzero(reach)
     if len(reach) == 0:
         return None
-    length = fall[reach] + d[reach] ** 2 / fall[reach]
+    length = np.hypot(fall[reach], d[reach])
     below, carried = axes.below_mm[reach], axes.above_mm[reach]
     total = members.volume_mm3(above, length)
     thicker = members.volume_mm3(np.maximum(carried, above + length), below)
     total += thicker - members.volume_mm3(carried, below)
     best = int(np.argmin(total))
     return int(reach[best]) if total[best] < cost else None
-
-
-def _weighed(way: Float) -> Float:
-    """(n,) lengths of ways (n, 3), over the cosine of their lean: a leaning column is wider."""
-    fall = np.maximum(-way[:, 2], SAME_MM)
-    result: Float = fall + (way[:, :2] ** 2).sum(axis=1) / fall
-    return result

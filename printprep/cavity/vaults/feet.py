@@ -45,7 +45,7 @@ def nearest_feet(
 ) -> tuple[Float, Float]:
     """Where straight columns from places (n, 3) would stand soonest.
 
-    Returns (n,) their weighed lengths (members.py), inf where none stands within a fall of
+    Returns (n,) their lengths, inf where none stands within a fall of
     ``deepest_mm``, and (n, 3) the middles of their feet.
     """
     ways = directions(members.tan)
@@ -59,7 +59,7 @@ def nearest_feet(
         middle = places[open_, None, None] + falls[None, None, :, None] * ways[None, :, None]
         above = np.broadcast_to(above_mm[open_, None, None], middle.shape[:3])
         held = _held(middle, above, falls[None, None, :], lean[None, :, None], dexels, members)
-        cost = np.where(held, np.inf, falls[None, None, :] * lean[None, :, None] ** 2)
+        cost = np.where(held, np.inf, falls[None, None, :] * lean[None, :, None])
         flat = cost.reshape(len(open_), -1)
         best = flat.argmin(axis=1)
         price[open_] = flat[np.arange(len(open_)), best]

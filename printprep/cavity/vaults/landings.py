@@ -2,8 +2,7 @@
 
 Notation: a landing is a disc of radius R with no point in the room; a column that ends there stands
 on the shell with its whole rim.  Cells are a by a wide and a / tan θ high, so that a step down by
-k cells may go k cells sideways.  A column's volume per thickness² is its length over the cosine of
-its lean, fall + d² / fall; L is the least such sum over ways of steps to a landing.
+k cells may go k cells sideways.  L is the least length over ways of steps to a landing.
 
 L follows from the floor upward: that of a cell is the least, over steps of one, two and three
 layers, of the step's length and the L where it ends.
@@ -11,6 +10,7 @@ layers, of the step's length and the L where it ends.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -89,7 +89,7 @@ def _step_down(length: Float, target: Float32, k: int, held: Float, cell: Float)
                 ):
                     continue
                 fall = layers * float(cell[2])
-                step = fall + (i * i + j * j) * float(cell[0]) ** 2 / fall
+                step = math.hypot(fall, i * float(cell[0]), j * float(cell[1]))
                 to = (slice(max(0, -i), nx - max(0, i)), slice(max(0, -j), ny - max(0, j)))
                 of = (slice(max(0, i), nx - max(0, -i)), slice(max(0, j), ny - max(0, -j)))
                 total = length[:, :, k - layers][of] + step

@@ -3,8 +3,8 @@
 Notation: θ steepest overhang from the vertical, m least thickness across an axis, ℓ length of the
 longest way up from a place to a tip, φ ≤ θ lean of a column, S slenderness.
 
-A column's section is a horizontal disc.  Leaning, it is thinner across its axis by cos φ, so its
-radius is t(ℓ) / (2 cos φ) where t(ℓ) is its thickness across.
+A column is round across its axis, t(ℓ) thick.  Cut level it reaches t(ℓ) / (2 cos φ) toward its
+lean.
 
 Until its tip reaches the ceiling a column is a cantilever that the nozzle drags at with a force
 that does not depend on it.  Its end gives way by ℓ³ / t⁴ times a constant, so the thickness that

@@ -32,8 +32,8 @@ def mending(
     members: Members,
     dexel_mm: float,
     axes: Axes,
-) -> list[Frustum]:
-    """Funnels under flagged patches, each on a column of its own.
+) -> tuple[list[Frustum], list[Frustum]]:
+    """Funnels under flagged patches, and a column for each.
 
     It stands where that is soonest, on shell or vaults; or it leans on an axis, at least as thick
     there as the column it enters: what stands out of its foot is less than a layer may reach.
@@ -53,7 +53,7 @@ def mending(
         else:
             props.append(prop)
     set_feet(forest, dexels, members)
-    return funnels(capitals, members) + columns(forest, members) + props
+    return funnels(capitals, members), columns(forest, members) + props
 
 
 def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frustum | None:
@@ -61,14 +61,13 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     fall = node[2] - axes.place_mm[:, 2]
     d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
     reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
-    weighed = np.where(reach, fall + d**2 / np.where(reach, fall, 1.0), np.inf)
-    best = int(np.argmin(weighed)) if len(weighed) else -1
-    if best < 0 or weighed[best] >= cost_mm:
+    length = np.where(reach, np.hypot(fall, d), np.inf)
+    best = int(np.argmin(length)) if len(length) else -1
+    if best < 0 or length[best] >= cost_mm:
         return None
-    slope = float(np.sqrt(weighed[best] / fall[best]))
-    thick = members.radius_mm * slope
+    thick = members.radius_mm * float(length[best] / fall[best])
     radius = max(thick, float(members.across_mm(axes.above_mm[best : best + 1])[0]))
-    return Frustum(axes.place_mm[best], radius, node, radius)
+    return Frustum.of_discs(axes.place_mm[best], radius, node, radius)
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:

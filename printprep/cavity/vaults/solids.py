@@ -1,7 +1,8 @@
 """Capitals and columns as convex solids of the boolean kernel.
 
-Every section is a regular polygon around the disc it stands for, all turned alike, so that a
-frustum between two of them has flat sides.
+A round section is a regular polygon around its circle.  A column is round across its axis; cut
+level it is an ellipse, as much longer toward its lean as the column leans.  Where columns meet, the
+lower one begins with the hull of all that stand on it, so that every joint is covered.
 """
 
 from __future__ import annotations
@@ -11,8 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import from_arrays
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -21,45 +20,55 @@ if TYPE_CHECKING:
     from printprep.cavity.vaults.capitals import Capitals
     from printprep.cavity.vaults.forest import Forest
     from printprep.cavity.vaults.members import Members
-    from printprep.types import Float, Int
+    from printprep.types import Float
 
 SIDES = 12
 # Solids that only touch would leave coincident faces: each goes on so far into the next.
 INTO_MM = 0.03
 # A funnel ends so far above the ceiling it carries.
 BEYOND_MM = 0.3
+# A column that falls less keeps the whole section it begins with: narrowing over so short a way, it
+# would lean out too far beside its axis.
+SHORT_MM = 2.0
 
 
 @dataclass(frozen=True, eq=False)
 class Frustum:
-    """What lies between two horizontal discs, middles (x, y, z), ``low`` under ``high``."""
+    """The hull of two level sections.
 
-    low: Float
-    low_radius_mm: float
-    high: Float
-    high_radius_mm: float
+    corners : (n, 3) of both;  across_mm : least thickness across its axis.
+    """
 
-    @property
-    def across_mm(self) -> float:
-        """Its least thickness across its axis."""
-        way = self.high - self.low
+    corners: Float
+    across_mm: float
+
+    @staticmethod
+    def of_discs(low: Float, low_radius_mm: float, high: Float, high_radius_mm: float) -> Frustum:
+        """Between two discs with middles (x, y, z), ``low`` under ``high``."""
+        upright = np.array([0.0, 0.0, -1.0])
+        lower = low + section(upright, low_radius_mm)
+        upper = high + section(upright, high_radius_mm)
+        way = high - low
         cosine = float(way[2] / np.linalg.norm(way))
-        return 2 * min(self.low_radius_mm, self.high_radius_mm) * cosine
+        across_mm = 2 * min(low_radius_mm, high_radius_mm) * cosine
+        return Frustum(np.concatenate([lower, upper]), across_mm)
 
     def bounds(self) -> tuple[Float, Float]:
         """Lower and upper corner of a box around it."""
-        wide = max(self.low_radius_mm, self.high_radius_mm) / np.cos(np.pi / SIDES)
-        ends = np.stack([self.low, self.high])
-        margin = np.array([wide, wide, 0.0])
-        return ends.min(axis=0) - margin, ends.max(axis=0) + margin
+        return self.corners.min(axis=0), self.corners.max(axis=0)
 
-    def corners(self) -> Float:
-        """(2 SIDES, 3) of regular polygons around the discs, the lower one first."""
-        turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
-        ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(SIDES)], axis=1)
-        ring /= np.cos(np.pi / SIDES)
-        lower = self.low + self.low_radius_mm * ring
-        return np.concatenate([lower, self.high + self.high_radius_mm * ring])
+
+def section(way: Float, radius_mm: float) -> Float:
+    """(SIDES, 3) corners of what a round column along ``way`` (3,) shows, cut level."""
+    steep = float(np.hypot(way[0], way[1]))
+    along = way[:2] / steep if steep > 0 else np.array([1.0, 0.0])
+    longer = float(np.linalg.norm(way)) / abs(float(way[2]))
+    turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
+    around = radius_mm / np.cos(np.pi / SIDES)
+    toward, aside = around * longer * np.cos(turn), around * np.sin(turn)
+    across = np.array([-along[1], along[0]])
+    level = toward[:, None] * along + aside[:, None] * across
+    return np.column_stack([level, np.zeros(SIDES)])
 
 
 def united(pieces: Sequence[Frustum]) -> Manifold:
@@ -67,7 +76,7 @@ def united(pieces: Sequence[Frustum]) -> Manifold:
     from manifold3d import Manifold, OpType
 
     return Manifold.batch_boolean(
-        [from_arrays(piece.corners(), _FACES) for piece in pieces], OpType.Add
+        [Manifold.hull_points(piece.corners) for piece in pieces], OpType.Add
     )
 
 
@@ -77,18 +86,16 @@ def funnels(capitals: Capitals, members: Members) -> list[Frustum]:
     for node, top in zip(capitals.node_mm, capitals.top_mm, strict=True):
         rise = max(float(top - node[2]), 0.0) + BEYOND_MM
         wide = members.radius_mm + rise * members.tan
-        found.append(Frustum(node, members.radius_mm, node + np.array([0.0, 0.0, rise]), wide))
+        high = node + np.array([0.0, 0.0, rise])
+        found.append(Frustum.of_discs(node, members.radius_mm, high, wide))
     return found
 
 
 def columns(forest: Forest, members: Members) -> list[Frustum]:
-    """Between the places of a forest, from above, thick enough for what they carry.
-
-    None begins narrower than those that lean on it end, so that every joint is covered.
-    """
+    """Between the places of a forest, from above, thick enough for what they carry."""
     found = []
-    radius = np.zeros(len(forest))
     places = np.array([forest.place(index) for index in range(len(forest))]).reshape(-1, 3)
+    standing: list[list[Float]] = [[] for _ in places]
     for index in np.argsort(-places[:, 2], kind="stable").tolist():
         lower = forest.down[index]
         if lower < 0:
@@ -96,26 +103,15 @@ def columns(forest: Forest, members: Members) -> list[Frustum]:
         way = places[lower] - places[index]
         fall, length = -float(way[2]), float(np.linalg.norm(way))
         if fall <= 0:  # two tips in one place
-            radius[lower] = max(float(radius[lower]), float(radius[index]))
+            standing[lower] += standing[index]
             continue
         above = forest.above_mm[index]
-        thick = members.across_mm(np.array([above, above + length])) * length / fall
-        start = max(float(radius[index]), float(thick[0]))
-        end = max(start, float(thick[1]))
-        radius[lower] = max(float(radius[lower]), end)
+        half = members.across_mm(np.array([above, above + length]))
+        begin = np.concatenate([section(way, float(half[0])), *standing[index]])
+        end = section(way, float(half[1]))
+        if fall < SHORT_MM:
+            end = np.concatenate([end, *standing[index]])
+        standing[lower].append(end)
         up = places[index] - way * (INTO_MM / fall)
-        found.append(Frustum(places[lower], end, up, start))
+        found.append(Frustum(np.concatenate([places[lower] + end, up + begin]), 2 * float(half[0])))
     return found
-
-
-def _faces() -> Int:
-    faces = []
-    for i in range(SIDES):
-        j = (i + 1) % SIDES
-        faces += [(i, j, SIDES + j), (i, SIDES + j, SIDES + i)]
-    for i in range(1, SIDES - 1):
-        faces += [(0, i + 1, i), (SIDES, SIDES + i, SIDES + i + 1)]
-    return np.array(faces, dtype=np.int64)
-
-
-_FACES = _faces()
