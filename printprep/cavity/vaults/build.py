@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import set_feet
 from printprep.cavity.vaults.forest import Forest
 from printprep.cavity.vaults.landings import Landings
-from printprep.cavity.vaults.members import Members, built_for
+from printprep.cavity.vaults.members import Members, built_for, slope_deg
 from printprep.cavity.vaults.mend import mending
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
@@ -72,8 +71,7 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     from manifold3d import Manifold
 
     members, rule = Members.of(profile), built_for(profile)
-    slope_deg = min(_slope_deg(rule), profile.overhang_deg)
-    samples = ceiling_samples(room, slope_deg)
+    samples = ceiling_samples(room, slope_deg(profile))
     capitals = cover(samples, members, SPACING_MM**2)
     forest = Forest()
     if len(samples):
@@ -87,10 +85,10 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
-        more = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
-        cavity = _without(cavity, sum(more, []), members)
-        flagged = list(_around(sum(more, []), cavity, rule).patches)
-        wide, narrow = wide + more[0], narrow + more[1]
+        under, props = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
+        cavity = _without(cavity, under + props, members)
+        flagged = list(_around(under + props, cavity, rule).patches)
+        wide, narrow = wide + under, narrow + props
     left = Unsupported(tuple(flagged))
     return Vaults(
         cavity=cavity,
@@ -103,16 +101,6 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
         unsupported_mm2=left.area_mm2,
         islands=left.islands,
     )
-
-
-def _slope_deg(rule: Acceptance) -> float:
-    """The slope from which ceilings are carried at once.
-
-    Along an even slope the rule grants tan θ = off / h, and c less only where a void closes.  Most
-    slopes between end in a wall and pass; carrying them all would add a tenth to the vaults.  The
-    few that do close are found by the rule, and mended.
-    """
-    return math.degrees(math.atan((rule.off_mm - rule.closing_mm / 4) / rule.layer_mm))
 
 
 def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:

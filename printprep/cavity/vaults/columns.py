@@ -103,10 +103,10 @@ def _best_partner(
     away = there[:, :2] - here[:2]
     d = np.sqrt((away**2).sum(axis=1))
     lower = here[2] - there[:, 2]
-    fall = np.maximum((lower + d / members.tan) / 2, lower)
+    fall = np.maximum((lower + d / members.lean_tan) / 2, lower)
     near = np.argsort(fall, kind="stable")[:PARTNERS]
     others, there, away, d, fall = others[near], there[near], away[near], d[near], fall[near]
-    share = np.minimum(fall * members.tan, d) / np.maximum(d, SAME_MM)
+    share = np.minimum(fall * members.lean_tan, d) / np.maximum(d, SAME_MM)
     where = np.column_stack([here[:2] + share[:, None] * away, here[2] - fall])
     left, _ = landings.way(where)
     alone, _ = landings.way(there)
@@ -129,7 +129,7 @@ def _best_axis(tip: int, cost: float, members: Members, forest: Forest) -> int |
     fall = here[2] - axes.place_mm[:, 2]
     away = axes.place_mm[:, :2] - here[:2]
     d = np.sqrt((away**2).sum(axis=1))
-    reach = (fall > 0) & (d <= fall * members.tan) & (axes.below_mm > FOOT_MM)
+    reach = (fall > 0) & (d <= fall * members.lean_tan) & (axes.below_mm > FOOT_MM)
     reach = np.flatnonzero(reach)
     if len(reach) == 0:
         return None

@@ -48,7 +48,7 @@ def nearest_feet(
     Returns (n,) their lengths, inf where none stands within a fall of
     ``deepest_mm``, and (n, 3) the middles of their feet.
     """
-    ways = directions(members.tan)
+    ways = directions(members.lean_tan)
     lean = np.linalg.norm(ways, axis=1)
     price = np.full(len(places), np.inf)
     foot = places.copy()

@@ -44,7 +44,7 @@ class Landings:
     @staticmethod
     def of(dexels: Dexels, members: Members, top_mm: float) -> Landings:
         """Find the way down from everywhere below ``top_mm``."""
-        cell = np.array([CELL_MM, CELL_MM, CELL_MM / members.tan])
+        cell = np.array([CELL_MM, CELL_MM, CELL_MM / members.lean_tan])
         low = np.append(dexels.low_mm, dexels.floor_mm) - cell
         x, y = (
             np.arange(

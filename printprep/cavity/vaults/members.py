@@ -1,7 +1,7 @@
 """What vaults are built of: how steep, how thick, how slender; and the volume of a column.
 
 Notation: θ steepest overhang from the vertical, m least thickness across an axis, ℓ length of the
-longest way up from a place to a tip, φ ≤ θ lean of a column, S slenderness.
+longest way up from a place to a tip, φ lean of a column, S slenderness.
 
 A column is round across its axis, t(ℓ) thick.  Cut level it reaches t(ℓ) / (2 cos φ) toward its
 lean.
@@ -32,6 +32,9 @@ SLENDERNESS = 12.0
 # Slicers thin out their outlines, PrusaSlicer by its resolution; so much less reach is built for.
 # (Without it 0.46 g of support were printed in a cow's cavity that the rule itself accepted.)
 RESOLUTION_MM = 0.0125
+# Below a joint a column narrows to its own section, a fifth of its radius over 2 mm or more
+# (solids.py), and there leans out so much farther than its axis does.
+JOINT_TAN = 0.06
 
 
 def built_for(profile: Profile) -> Acceptance:
@@ -40,23 +43,46 @@ def built_for(profile: Profile) -> Acceptance:
     return replace(rule, off_mm=rule.off_mm - RESOLUTION_MM)
 
 
+def slope_deg(profile: Profile) -> float:
+    """The lean of a ceiling, from the vertical, from which it is carried at once.
+
+    Along an even slope the rule grants tan θ = off / h, and c less only where a void closes.  Most
+    slopes between end in a wall and pass; carrying them all would add a tenth to the vaults.  The
+    few that do close are found by the rule, and mended.
+    """
+    return min(math.degrees(math.atan(_slope_tan(built_for(profile)))), profile.overhang_deg)
+
+
+def _slope_tan(rule: Acceptance) -> float:
+    return max(rule.off_mm - rule.closing_mm / 4, 0.0) / rule.layer_mm
+
+
 @dataclass(frozen=True)
 class Members:
-    """theta_deg : steepest overhang from the vertical;  thickness_mm : least, across any axis."""
+    """theta_deg : how far a funnel widens, from the vertical;  lean_deg : how far a column leans;
+    thickness_mm : least, across any axis."""
 
     theta_deg: float
+    lean_deg: float
     thickness_mm: float
     slenderness: float = SLENDERNESS
 
     @staticmethod
     def of(profile: Profile) -> Members:
         """As the profile asks.  Raises UsageError where it has no nozzle."""
-        theta_deg = min(built_for(profile).steepest_deg, profile.overhang_deg)
-        return Members(theta_deg, profile.min_feature_mm)
+        rule, cap_deg = built_for(profile), profile.overhang_deg
+        lean_deg = math.degrees(math.atan(_slope_tan(rule) - JOINT_TAN))
+        return Members(
+            min(rule.steepest_deg, cap_deg), min(lean_deg, cap_deg), profile.min_feature_mm
+        )
 
     @property
     def tan(self) -> float:
         return math.tan(math.radians(self.theta_deg))
+
+    @property
+    def lean_tan(self) -> float:
+        return math.tan(math.radians(self.lean_deg))
 
     @property
     def radius_mm(self) -> float:
@@ -66,7 +92,7 @@ class Members:
     @property
     def leaning_radius_mm(self) -> float:
         """Of the upper end of a column that leans as much as it may."""
-        return self.radius_mm / math.cos(math.radians(self.theta_deg))
+        return self.radius_mm / math.cos(math.radians(self.lean_deg))
 
     def across_mm(self, length_mm: Float) -> Float:
         """Half the thickness across the axis, a length below the farthest tip."""

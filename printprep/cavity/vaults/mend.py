@@ -3,6 +3,7 @@ material, shell or vault."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,7 @@ from printprep.cavity.vaults.columns import FOOT_MM
 from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import STEP_MM, nearest_feet, set_feet
 from printprep.cavity.vaults.forest import Axes, Forest
-from printprep.cavity.vaults.solids import Frustum, columns, funnels
+from printprep.cavity.vaults.solids import Frustum, columns, funnels, section
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +39,7 @@ def mending(
     It stands where that is soonest, on shell or vaults; or it leans on an axis, at least as thick
     there as the column it enters: what stands out of its foot is less than a layer may reach.
     """
+    members = replace(members, lean_deg=members.theta_deg)
     points = np.concatenate([_points(patch, layer_mm) for patch in flagged])
     capitals = cover(points, members, SPACING_MM**2)
     dexels = Dexels.of(cavity, dexel_mm)
@@ -65,9 +67,10 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     best = int(np.argmin(length)) if len(length) else -1
     if best < 0 or length[best] >= cost_mm:
         return None
-    thick = members.radius_mm * float(length[best] / fall[best])
-    radius = max(thick, float(members.across_mm(axes.above_mm[best : best + 1])[0]))
-    return Frustum.of_discs(axes.place_mm[best], radius, node, radius)
+    foot = axes.place_mm[best]
+    thick = float(members.across_mm(axes.above_mm[best : best + 1])[0])
+    round_ = section(node - foot, thick)
+    return Frustum(np.concatenate([foot + round_, node + round_]), 2 * thick)
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:
