@@ -12,14 +12,14 @@ from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
 from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import set_feet
-from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.forest import Axes, Forest
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members, built_for, slope_deg
 from printprep.cavity.vaults.mend import mending
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
 from printprep.overhang.limits import Acceptance
-from printprep.overhang.rule import Unsupported, unsupported_ceilings
+from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
 from printprep.overhang.suspects import Suspects
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ SIMPLIFY_MM = 0.003
 # The finished cavity is judged with layers that begin at these shares of a layer.
 PHASES = (0.0, 0.5)
 MOST_MENDINGS = 4
+# Mending is tried on blocks that reach so far around what is flagged, before it is done.
+BLOCK_MM = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +87,7 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
-        under, props = mending(cavity, flagged, rule.layer_mm, members, DEXEL_MM, forest.axes())
+        under, props = _mended(cavity, flagged, rule, members, forest.axes())
         cavity = _without(cavity, under + props, members)
         flagged = list(_around(under + props, cavity, rule).patches)
         wide, narrow = wide + under, narrow + props
@@ -108,6 +110,29 @@ def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Man
     if pieces:
         room = room - united(pieces)
     return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
+
+
+def _mended(
+    cavity: Manifold,
+    flagged: Sequence[Flagged],
+    rule: Acceptance,
+    members: Members,
+    axes: Axes,
+) -> tuple[list[Frustum], list[Frustum]]:
+    """Funnels and their columns, until blocks cut from around all patches are flagged no more."""
+    middles = np.array([patch.at_mm for patch in flagged])
+    dexels = Dexels.of(cavity, DEXEL_MM)
+    block = cavity ^ Suspects(middles, middles).window(np.full(3, BLOCK_MM))
+    wide: list[Frustum] = []
+    narrow: list[Frustum] = []
+    for _ in range(MOST_MENDINGS):
+        under, props = mending(dexels, flagged, rule.layer_mm, members, axes)
+        wide, narrow = wide + under, narrow + props
+        block = block - united(under + props)
+        flagged = list(_around(under, block, rule).patches)
+        if not flagged:
+            break
+    return wide, narrow
 
 
 def _around(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:

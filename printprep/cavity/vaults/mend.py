@@ -11,7 +11,6 @@ import numpy as np
 from printprep.cavity.vaults.capitals import cover
 from printprep.cavity.vaults.ceiling import SPACING_MM
 from printprep.cavity.vaults.columns import FOOT_MM
-from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import STEP_MM, nearest_feet, set_feet
 from printprep.cavity.vaults.forest import Axes, Forest
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, section
@@ -19,30 +18,30 @@ from printprep.cavity.vaults.solids import Frustum, columns, funnels, section
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from manifold3d import Manifold
-
+    from printprep.cavity.vaults.dexels import Dexels
     from printprep.cavity.vaults.members import Members
     from printprep.overhang.rule import Flagged
     from printprep.types import Float
 
+# Points of an axis, from where a column that leans on it begins to stand out of it.
+GUSSET_STEPS = 3
+
 
 def mending(
-    cavity: Manifold,
+    dexels: Dexels,
     flagged: Sequence[Flagged],
     layer_mm: float,
     members: Members,
-    dexel_mm: float,
     axes: Axes,
 ) -> tuple[list[Frustum], list[Frustum]]:
     """Funnels under flagged patches, and a column for each.
 
-    It stands where that is soonest, on shell or vaults; or it leans on an axis, at least as thick
-    there as the column it enters: what stands out of its foot is less than a layer may reach.
+    It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick as the
+    column it enters.
     """
     members = replace(members, lean_deg=members.theta_deg)
     points = np.concatenate([_points(patch, layer_mm) for patch in flagged])
     capitals = cover(points, members, SPACING_MM**2)
-    dexels = Dexels.of(cavity, dexel_mm)
     nodes = capitals.node_mm
     deepest = float(nodes[:, 2].max()) - dexels.floor_mm + STEP_MM
     price, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
@@ -63,14 +62,16 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     fall = node[2] - axes.place_mm[:, 2]
     d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
     reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
+    reach[-GUSSET_STEPS:] = False
+    reach[:-GUSSET_STEPS] &= axes.upper[:-GUSSET_STEPS] == axes.upper[GUSSET_STEPS:]
     length = np.where(reach, np.hypot(fall, d), np.inf)
     best = int(np.argmin(length)) if len(length) else -1
     if best < 0 or length[best] >= cost_mm:
         return None
-    foot = axes.place_mm[best]
-    thick = float(members.across_mm(axes.above_mm[best : best + 1])[0])
-    round_ = section(node - foot, thick)
-    return Frustum(np.concatenate([foot + round_, node + round_]), 2 * thick)
+    foot, under = axes.place_mm[best], axes.place_mm[best + GUSSET_STEPS]
+    half = float(members.across_mm(axes.above_mm[best]))
+    own, entered = section(node - foot, half), section(foot - under, half)
+    return Frustum(np.concatenate([under + entered, foot + own, node + own]), 2 * half)
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:
