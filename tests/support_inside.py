@@ -36,6 +36,7 @@ def support_inside_g(
         **profile_settings(profile),
         "fill_density": "15%",  # quicker than solid; supports do not depend on it
         "fill_pattern": "grid",
+        "overhangs": "0",  # twice as quick; bridges then get support too, so nothing is missed
         "support_material": "1",
         "support_material_auto": "1",
         "support_material_threshold": f"{threshold_deg:g}",
