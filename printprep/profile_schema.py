@@ -109,6 +109,7 @@ class Profile(_Frozen):
     min_feature_mm: float = _bounded(0.1, 50.0)
     min_gap_mm: float | None = _bounded(0.01, 50.0, default=None)
     overhang_deg: float = _bounded(0.0, 90.0)
+    column_slenderness: float | None = _bounded(2.0, 100.0, default=None)
     printer: Printer
     material: Material
     drain: Drain = Drain()
@@ -123,6 +124,8 @@ class Profile(_Frozen):
             for key in ("nozzle_mm", "line_width_mm"):
                 if getattr(printer, key) is None:
                     raise _impossible(f"printer.{key}", "is needed where process is fdm")
+            if self.column_slenderness is None:
+                raise _impossible("column_slenderness", "is needed where process is fdm")
             assert printer.nozzle_mm is not None and printer.line_width_mm is not None
             _within("printer.layer_height_mm", printer.layer_height_mm, 0.0, printer.nozzle_mm)
             _within("printer.first_layer_mm", printer.first_layer_mm, 0.0, printer.nozzle_mm)
@@ -136,8 +139,9 @@ class Profile(_Frozen):
                     raise _impossible(f"printer.{key}", f"has no meaning for {self.process}")
             if self.slicer.check_with is not None:
                 raise _impossible("slicer.check_with", f"has no slicer for {self.process}")
-            if self.infill is not None:
-                raise _impossible("infill", f"has no meaning for {self.process}")
+            for key in ("infill", "column_slenderness"):
+                if getattr(self, key) is not None:
+                    raise _impossible(key, f"has no meaning for {self.process}")
         if drain.count and drain.diameter_mm is None:
             raise _impossible("drain.diameter_mm", "is needed where drain.count is above 0")
         return self

@@ -21,8 +21,10 @@ from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members
 from printprep.cavity.vaults.sets import OVERLAP_MM, REACH_MM, RISE_MM, Sets
 from printprep.cavity.vaults.solids import INTO_MM, SIDES, Frustum, columns, section, united
+from printprep.errors import UsageError
+from printprep.profiles import load_profile
 
-MEMBERS = Members(theta_deg=35.5, lean_deg=38.0, thickness_mm=1.2)
+MEMBERS = Members(theta_deg=35.5, lean_deg=38.0, thickness_mm=1.2, slenderness=12.0)
 
 
 def room() -> Manifold:
@@ -110,6 +112,17 @@ def test_a_column_sways_no_more_than_the_slenderest_thin_one(length):
     thickness = 2 * float(MEMBERS.across_mm(np.array(length)))
     allowed = (MEMBERS.slenderness * 1.2) ** 3 / 1.2**4
     assert length**3 / thickness**4 <= allowed * (1 + 1e-9)
+
+
+def test_the_slenderness_is_the_profile_s():
+    thick, thin = (
+        Members.of(load_profile("fdm-pla-0.4", {"column_slenderness": s})) for s in (6, 24)
+    )
+    length = np.array(20.0)
+    assert thick.across_mm(length) == pytest.approx(0.6 * (20 / (6 * 1.2)) ** 0.75)
+    assert thin.across_mm(length) == 0.6
+    with pytest.raises(UsageError, match="column_slenderness has no meaning for resin"):
+        load_profile("resin-standard", {"column_slenderness": 12})
 
 
 @given(st.floats(0, 60), st.floats(0, 60))

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Our choice, from how slicers' tree supports widen: 5° of diameter over length is 1/11.5 of it.
-SLENDERNESS = 12.0
 # Slicers thin out their outlines, PrusaSlicer by its resolution; so much less reach is built for.
 # (Without it 0.46 g of support were printed in a cow's cavity that the rule itself accepted.)
 RESOLUTION_MM = 0.0125
@@ -60,20 +58,25 @@ def _slope_tan(rule: Acceptance) -> float:
 @dataclass(frozen=True)
 class Members:
     """theta_deg : how far a funnel widens, from the vertical;  lean_deg : how far a column leans;
-    thickness_mm : least, across any axis."""
+    thickness_mm : least, across any axis;  slenderness : lengths over thickness from which a column
+    widens."""
 
     theta_deg: float
     lean_deg: float
     thickness_mm: float
-    slenderness: float = SLENDERNESS
+    slenderness: float
 
     @staticmethod
     def of(profile: Profile) -> Members:
         """As the profile asks.  Raises UsageError where it has no nozzle."""
         rule, cap_deg = built_for(profile), profile.overhang_deg
         lean_deg = math.degrees(math.atan(_slope_tan(rule) - JOINT_TAN))
+        assert profile.column_slenderness is not None
         return Members(
-            min(rule.steepest_deg, cap_deg), min(lean_deg, cap_deg), profile.min_feature_mm
+            theta_deg=min(rule.steepest_deg, cap_deg),
+            lean_deg=min(lean_deg, cap_deg),
+            thickness_mm=profile.min_feature_mm,
+            slenderness=profile.column_slenderness,
         )
 
     @property
