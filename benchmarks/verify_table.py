@@ -62,15 +62,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--profile", default="fdm-pla-0.4")
     parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
     parser.add_argument("--bare", action="store_true", help="without supports inside cavities")
-    parser.add_argument("--json", type=Path, help="the rows as JSON too")
+    parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
     chosen = parser.parse_args(arguments)
+    kept: dict[str, dict[str, Any]] = {}
+    if chosen.json and chosen.json.is_file():
+        kept = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
     rows = []
     for model, up in catalogue(chosen.catalogue, chosen.only):
-        rows.append(measure(model, up, chosen.size, chosen.profile, bare=chosen.bare))
-        sys.stderr.write(json.dumps(rows[-1]) + "\n")
+        row = kept.get(model.stem)
+        if row is None:
+            row = measure(model, up, chosen.size, chosen.profile, bare=chosen.bare)
+            sys.stderr.write(json.dumps(row) + "\n")
+        rows.append(row)
         chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
-    if chosen.json:
-        chosen.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+        if chosen.json:
+            chosen.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     return 0 if rows and all(agrees(row) for row in rows) else 1
 
 
@@ -92,6 +98,9 @@ def measure(
         if found.supported is None
         else found.supported.support_in_cavities_mm3,
         "findings": ", ".join(item.rule for item in found.findings) or "none",
+        "vaults_g": None
+        if made.supports is None
+        else made.supports.added_mm3 * made.profile.material.density_g_cm3 / 1000,
         "seconds": time.perf_counter() - begun,
     }
 
