@@ -30,9 +30,9 @@ PATCH_MM = 2.6
 NEIGHBOURS = 6
 ROUNDS = 4
 EVENINGS = 2
-TIGHTENINGS = 3
+TIGHTENINGS = 2
 # Steps in search of a funnel's node: for groups, and for what is built.
-_STEPS, _MORE_STEPS = 8, 24
+_STEPS, _MORE_STEPS = 6, 12
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,11 +23,15 @@ _FANS = ((0.0, 1), (0.5, 6), (1.0, 16))
 _CHUNK = 12
 
 
-def disc(radius_mm: float = 1.0) -> Float:
-    """(m, 3) offsets over a horizontal disc: its middle, a ring half way out, and its rim."""
-    turn = 2 * np.pi * np.arange(_RIM) / _RIM
-    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(_RIM)], axis=1)
-    return np.concatenate([np.zeros((1, 3)), ring[::2] * radius_mm / 2, ring * radius_mm])
+def ring(count: int) -> Float:
+    """(count, 3) corners of a regular polygon in the horizontal circle of radius 1."""
+    turn = 2 * np.pi * np.arange(count) / count
+    return np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1)
+
+
+def disc() -> Float:
+    """(m, 3) offsets over the horizontal disc of radius 1: middle, half way out, and rim."""
+    return np.concatenate([np.zeros((1, 3)), ring(_RIM // 2) / 2, ring(_RIM)])
 
 
 def directions(tan: float) -> Float:

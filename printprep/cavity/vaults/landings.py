@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.feet import disc
+from printprep.cavity.vaults.feet import ring
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 CELL_MM = 1.0
 _LAYERS = 3
+# Of the hexagon that stands for a disc: feet are looked for exactly later.
+_CORNERS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +55,8 @@ class Landings:
             for k in range(2)
         )
         z = np.arange(low[2], top_mm + cell[2], cell[2])
-        rim = disc(members.leaning_radius_mm + dexels.step_mm / 2)
+        radius = members.leaning_radius_mm + dexels.step_mm / 2
+        rim = radius * np.concatenate([np.zeros((1, 3)), ring(_CORNERS)])
         flat = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
         length = np.zeros((len(x), len(y), len(z)))
         target = np.zeros((*length.shape, 3), dtype=np.float32)
