@@ -87,7 +87,7 @@ class Floor:
         from scipy.ndimage import distance_transform_edt
 
         at = np.column_stack(np.unravel_index(self._cells(dent)[0], self.grid.shape))
-        # The grid's own margin is as wide
+        # The grid's own margin is as wide: the block stays within it.
         start, stop = at.min(axis=0) - MARGIN, at.max(axis=0) + MARGIN + 1
         i, j, k = map(slice, start, stop)
         block = (i, j, k)
