@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -209,20 +210,25 @@ class Driller:
         """Where in a pool a ball of the hole's full width can be."""
         return np.flatnonzero(np.isin(self._pool_of_rest, pool))
 
-    def _bands(self, rests: Int) -> tuple[float, ...]:
-        """Bands of height to look for balls at rest in, up to the first that holds them all."""
+    def _bands(self, rests: Int) -> list[tuple[float, float]]:
+        """Bands of height to look for balls at rest in, one on the other, that hold them all.
+
+        A band leaves out the ones before it: where those gave no hole, their places are the
+        cheapest still, and would be tried again.
+        """
         if not len(rests):
-            return ()
+            return []
         dexels = self.rests.dexels
         high = float(np.ptp([dexels.low_mm[rests].min(), dexels.high_mm[rests].max()]))
-        return (*(band for band in BANDS_MM if band < high), high)
+        return list(pairwise((0.0, *(band for band in BANDS_MM if band < high), high)))
 
     def _vent_of(self, cavity: Int) -> Channel | None:
         """The best vent of a cavity, from farther down where none begins higher."""
         top = float(self.pools.dexels.high_mm[cavity].max())
         rests = self._rests_in(cavity)
         mouths = np.array([channel.centre_mm for _, channel in self.drilled])
-        for band_mm in self._bands(rests)[-2:]:
+        bands = self._bands(rests)
+        for band_mm in [(0.0, bands[-2][1]), bands[-1]] if len(bands) > 1 else bands:
             balls = balls_at_rest(self.rests, rests, band_mm, top=True)
             away = np.linalg.norm(balls[:, None] - mouths, axis=2).min(axis=1)
             extra = DEPTH_MM * (top - balls[:, 2]) - AWAY_MM * away

@@ -62,14 +62,17 @@ class Candidate:
         return near and float(self.axis @ other.axis) > LIKE_COSINE
 
 
-def balls_at_rest(pools: Pools, pool: Int, band_mm: float, *, top: bool = False) -> Float:
+def balls_at_rest(
+    pools: Pools, pool: Int, band_mm: tuple[float, float], *, top: bool = False
+) -> Float:
     """(n, 3) centres of balls at rest in a pool, in columns whose own lowest lie in a band.
 
-    top : the highest instead of the lowest.
+    band_mm : its two ends, above the pool's lowest;  top : below the highest instead.
     """
     dexels = pools.dexels
     edge = -dexels.high_mm[pool] if top else dexels.low_mm[pool]
-    near = np.flatnonzero(edge <= edge.min() + band_mm)
+    above = edge - edge.min()
+    near = np.flatnonzero((above >= band_mm[0]) & (above <= band_mm[1]))
     near = pool[near[np.linspace(0, len(near) - 1, min(MOST_BALLS, len(near))).astype(int)]]
     i, j = np.divmod(dexels.column[near], pools.grid.shape[1])
     z = dexels.high_mm[near] if top else dexels.low_mm[near]

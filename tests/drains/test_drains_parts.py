@@ -12,6 +12,7 @@ from printprep.drains.channel import Channel, bored, frame
 from printprep.drains.fill import filling
 from printprep.drains.plugs import TAPER_MM, plug
 from printprep.drains.pools import RAISED_MM, SLOPE, Pools
+from printprep.drains.search import balls_at_rest
 from printprep.drains.space import Space, around, hollowed, open_air
 from printprep.types import Drain
 from printprep.voxel.distance import Surface
@@ -54,6 +55,19 @@ def test_a_ball_rests_a_radius_above_the_floor():
     assert dexels.low_mm.min() == pytest.approx(1 + RADIUS, abs=0.02)
     assert dexels.high_mm.max() == pytest.approx(12 - RADIUS, abs=0.02)
     assert pools.volume_mm3.sum() == pytest.approx(void.volume(), rel=0.08)
+
+
+def test_bands_of_balls_leave_none_out_and_none_twice():
+    """Balls rest on a bowl's floor at every height; a band holds those between its ends."""
+    void = Manifold.sphere(12, 96).translate((0, 0, 14))
+    outside = Manifold.sphere(14, 96).translate((0, 0, 14))
+    space = hollowed(around(outside, 2 * RADIUS), void)
+    pools = Pools(balls_in(space, Surface.of(void), RADIUS), space.grid)
+    pool = np.arange(len(pools.dexels.column))
+    lowest = pools.dexels.low_mm.min()
+    low, high = (balls_at_rest(pools, pool, band)[:, 2] - lowest for band in ((0, 4), (4, 12)))
+    assert low.max() <= 4 <= high.min() and high.max() <= 12
+    assert low.min() < 0.1 and low.max() > 3.5 and high.min() < 4.5
 
 
 def test_without_an_outlet_all_of_it_stays():
