@@ -98,9 +98,6 @@ def measure(
         if found.supported is None
         else found.supported.support_in_cavities_mm3,
         "findings": ", ".join(item.rule for item in found.findings) or "none",
-        "vaults_g": None
-        if made.supports is None
-        else made.supports.added_mm3 * made.profile.material.density_g_cm3 / 1000,
         "seconds": time.perf_counter() - begun,
     }
 

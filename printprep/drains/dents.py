@@ -70,7 +70,8 @@ def dents(void: Manifold, channels: Sequence[Channel], pitch_mm: float) -> Manif
 class Floor:
     """The floor of a void as heights over columns, with levels up to which it is to be raised.
 
-    level_mm : (n,) for each dexel, −inf where its floor is left.
+    level_mm : (n,) mm, for each dexel, −inf where its floor is left;  top_mm : (n,) mm, the same,
+        just below the floor where that is left.
     """
 
     def __init__(self, grid: Grid, dexels: Dexels, level_mm: Float) -> None:
@@ -83,7 +84,8 @@ class Floor:
         self._dexel.reshape(-1)[cell] = dexel
 
     def filled(self, dent: Int) -> Manifold:
-        """The solid that raises the floor in these dexels, and meets it all around."""
+        """The solid that raises the floor in the dexels numbered ``dent`` (k,), and meets it all
+        around."""
         from scipy.ndimage import distance_transform_edt
 
         at = np.column_stack(np.unravel_index(self._cells(dent)[0], self.grid.shape))
