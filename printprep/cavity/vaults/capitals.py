@@ -20,6 +20,8 @@ import numpy as np
 from printprep.cavity.vaults.sets import OVERLAP_MM, REACH_MM, RISE_MM, Sets
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from printprep.cavity.vaults.members import Members
     from printprep.types import Float, Int
 
@@ -201,10 +203,10 @@ def _tightened(nodes: Float, samples: Float, members: Members) -> Capitals:
             if len(alone) == 0:
                 alive[index] = False
                 continue
-            nodes[index] = _higher(nodes[index], samples[alone], members)
             times[alone] += 1
             own[index] = alone
-    kept = np.flatnonzero(alive)
+        kept = np.flatnonzero(alive)
+        nodes[kept] = _higher(nodes[kept], [samples[own[index]] for index in kept], members)
     tops = [float(samples[own[index], 2].max()) for index in kept]
     return Capitals(nodes[kept], np.array(tops))
 
@@ -225,9 +227,8 @@ def _carried(nodes: Float, samples: Float, members: Members) -> tuple[Int, Int]:
     return node[order], sample[order]
 
 
-def _higher(node: Float, samples: Float, members: Members) -> Float:
-    """The highest node found that carries all of these samples, or the one it has."""
-    found = Sets.of(samples, np.array([len(samples)])).highest(
-        node[None, :2], members, _MORE_STEPS
-    )[0]
-    return found if found[2] > node[2] else node
+def _higher(nodes: Float, samples: Sequence[Float], members: Members) -> Float:
+    """(k, 3) the highest nodes found that carry all of their samples, or those they have."""
+    sets = Sets.of(np.concatenate(samples), np.array([len(own) for own in samples]))
+    found = sets.highest(nodes[:, :2], members, _MORE_STEPS)
+    return np.where((found[:, 2] > nodes[:, 2])[:, None], found, nodes)

@@ -47,7 +47,7 @@ def raise_columns(
         if not waiting.pop(tip, False):
             continue
         place, above = forest.place(tip), forest.above_mm[tip]
-        length = float(landings.way(place[None])[0][0])
+        length = float(landings.way_mm(place[None])[0])
         near_mm, foot = stubs.get(tip, (np.inf, place))
         if np.isfinite(near_mm):
             length = near_mm
@@ -108,8 +108,7 @@ def _best_partner(
     others, there, away, d, fall = others[near], there[near], away[near], d[near], fall[near]
     share = np.minimum(fall * members.lean_tan, d) / np.maximum(d, SAME_MM)
     where = np.column_stack([here[:2] + share[:, None] * away, here[2] - fall])
-    left, _ = landings.way(where)
-    alone, _ = landings.way(there)
+    left, alone = landings.way_mm(where), landings.way_mm(there)
     above, above_others = forest.above_mm[tip], np.array([forest.above_mm[k] for k in others])
     mine, theirs = (np.linalg.norm(where - place, axis=1) for place in (here, there))
     trunk = np.maximum(above + mine, above_others + theirs)

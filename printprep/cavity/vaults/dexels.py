@@ -51,15 +51,33 @@ class Dexels:
 
     def contains(self, points: Float) -> Bool:
         """(…,) whether points (…, 3) lie in the room."""
-        nearest = np.rint((points[..., :2] - self.low_mm) / self.step_mm).astype(np.int64)
-        i, j = nearest[..., 0], nearest[..., 1]
-        height = points[..., 2] - self.floor_mm
-        valid = (i >= 0) & (i < self.shape[0]) & (j >= 0) & (j < self.shape[1])
-        valid &= (height > 0) & (height < self.span_mm)
-        key = np.where(valid, (i * self.shape[1] + j) * self.span_mm + height, -1.0)
+        column, height = self.nearest(points[..., :2]), points[..., 2] - self.floor_mm
+        valid = (column >= 0) & (height > 0) & (height < self.span_mm)
+        key = np.where(valid, column * self.span_mm + height, -1.0)
         crossed: Int = np.searchsorted(self.keys, key)
         result: Bool = valid & (crossed % 2 == 1)
         return result
+
+    def nearest(self, places: Float) -> Int:
+        """(…,) numbers of the columns nearest to places (…, 2), −1 beyond the lattice."""
+        found = np.rint((places - self.low_mm) / self.step_mm).astype(np.int64)
+        i, j = found[..., 0], found[..., 1]
+        valid = (i >= 0) & (i < self.shape[0]) & (j >= 0) & (j < self.shape[1])
+        result: Int = np.where(valid, i * self.shape[1] + j, -1)
+        return result
+
+    def at_heights(self, z_mm: Float) -> Bool:
+        """(columns + 1, n) whether each column is in the room at heights (n,), upward.
+
+        The last row, number −1, is of what lies beyond the lattice.
+        """
+        column = np.floor(self.keys / self.span_mm).astype(np.int64)
+        above = self.keys - column * self.span_mm
+        crossed = np.zeros((self.shape[0] * self.shape[1] + 1, len(z_mm) + 1), dtype=np.uint8)
+        first = np.searchsorted(z_mm - self.floor_mm, above, side="right")
+        np.bitwise_xor.at(crossed, (column, first), 1)
+        inside = np.bitwise_xor.accumulate(crossed, axis=1)[:, :-1]
+        return inside.astype(bool)
 
     def columns_mm(self) -> Float:
         """(nx, ny, 2) places of the columns."""

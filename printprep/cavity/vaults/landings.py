@@ -19,13 +19,9 @@ import numpy as np
 from printprep.cavity.vaults.feet import ring
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from printprep.cavity.vaults.dexels import Dexels
     from printprep.cavity.vaults.members import Members
-    from printprep.types import Float
-
-    Float32 = NDArray[np.float32]
+    from printprep.types import Bool, Float, Int
 
 CELL_MM = 1.0
 _LAYERS = 3
@@ -35,13 +31,11 @@ _CORNERS = 6
 
 @dataclass(frozen=True, eq=False)
 class Landings:
-    """low_mm : (3,) middle of cell (0, 0, 0);  cell_mm : (3,);  length_mm : (nx, ny, nz), L;
-    target_mm : (nx, ny, nz, 3) float32, middle of the cell where that way lands."""
+    """low_mm : (3,) middle of cell (0, 0, 0);  cell_mm : (3,);  length_mm : (nx, ny, nz), L."""
 
     low_mm: Float
     cell_mm: Float
     length_mm: Float
-    target_mm: Float32
 
     @staticmethod
     def of(dexels: Dexels, members: Members, top_mm: float) -> Landings:
@@ -58,46 +52,47 @@ class Landings:
         radius = members.leaning_radius_mm + dexels.step_mm / 2
         rim = radius * np.concatenate([np.zeros((1, 3)), ring(_CORNERS)])
         flat = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-        length = np.zeros((len(x), len(y), len(z)))
-        target = np.zeros((*length.shape, 3), dtype=np.float32)
-        for k, height in enumerate(z.tolist()):
-            middles = np.concatenate([flat, np.full((*flat.shape[:2], 1), height)], axis=-1)
-            target[:, :, k] = middles
-            held = np.zeros(flat.shape[:2], dtype=bool)
-            for offset in rim:
-                held |= dexels.contains(middles + offset)
-            if held.any():
-                _step_down(length, target, k, held, cell)
-        return Landings(low, cell, length, target)
+        at = dexels.at_heights(z)
+        held = np.zeros((len(x), len(y), len(z)), dtype=bool)
+        for offset in rim[:, :2]:
+            held |= at[dexels.nearest(flat + offset)]
+        return Landings(low, cell, _lengths(held, cell))
 
-    def way(self, points: Float) -> tuple[Float, Float]:
-        """(n,) lengths and (n, 3) landings below points (n, 3), by the nearest cell."""
+    def way_mm(self, points: Float) -> Float:
+        """(n,) lengths of the ways down from points (n, 3), by the nearest cell."""
         index = np.rint((points - self.low_mm) / self.cell_mm).astype(np.int64)
-        index = np.clip(index, 0, np.array(self.length_mm.shape) - 1)
-        at = tuple(index.T)
-        return self.length_mm[at], self.target_mm[at].astype(np.float64)
+        index = np.minimum(np.maximum(index, 0), np.array(self.length_mm.shape) - 1)
+        result: Float = self.length_mm[index[:, 0], index[:, 1], index[:, 2]]
+        return result
 
 
-def _step_down(length: Float, target: Float32, k: int, held: Float, cell: Float) -> None:
-    """Fill layer k where columns are ``held`` up, from the layers below; in place."""
-    nx, ny = held.shape
-    best = np.full(held.shape, np.inf)
-    land = target[:, :, k].copy()
-    for layers in range(1, min(_LAYERS, k) + 1):
-        reach = layers
-        for i in range(-reach, reach + 1):
-            for j in range(-reach, reach + 1):
-                if i * i + j * j > reach * reach or (
-                    layers > 1 and max(abs(i), abs(j)) < layers - 1
-                ):
-                    continue
-                fall = layers * float(cell[2])
-                step = math.hypot(fall, i * float(cell[0]), j * float(cell[1]))
-                to = (slice(max(0, -i), nx - max(0, i)), slice(max(0, -j), ny - max(0, j)))
-                of = (slice(max(0, i), nx - max(0, -i)), slice(max(0, j), ny - max(0, -j)))
-                total = length[:, :, k - layers][of] + step
-                better = total < best[to]
-                best[to] = np.where(better, total, best[to])
-                land[to] = np.where(better[..., None], target[:, :, k - layers][of], land[to])
-    length[:, :, k] = np.where(held, best, 0.0)
-    target[:, :, k] = np.where(held[..., None], land, target[:, :, k])
+def _lengths(held: Bool, cell: Float) -> Float:
+    """(nx, ny, nz) L, from where columns are held up, of that shape, layer upon layer."""
+    # Beyond the cells, on every side, none is to be stepped to.
+    length = np.full([n + 2 * _LAYERS for n in held.shape[2:] + held.shape[:2]], np.inf)
+    inner = length[(slice(_LAYERS, -_LAYERS),) * 3]
+    inner[...] = 0.0
+    moves, step = _steps(cell)
+    offset = moves @ np.array([length[0].size, length.shape[2], 1])
+    every = length.reshape(-1)
+    for k in np.flatnonzero(held.any(axis=(0, 1))).tolist():
+        i, j = np.nonzero(held[:, :, k])
+        at = np.ravel_multi_index((k + _LAYERS, i + _LAYERS, j + _LAYERS), length.shape)
+        every[at] = (every[at[:, None] + offset] + step).min(axis=1)
+    return np.moveaxis(inner, 0, 2)
+
+
+def _steps(cell: Float) -> tuple[Int, Float]:
+    """(s, 3) steps down by layers, along x and along y, in cells, and (s,) their lengths.
+
+    Of those over several layers only the widest: the others are made of shorter ones.
+    """
+    moves = [
+        (-layers, i, j)
+        for layers in range(1, _LAYERS + 1)
+        for i in range(-layers, layers + 1)
+        for j in range(-layers, layers + 1)
+        if i * i + j * j <= layers * layers and (layers == 1 or max(abs(i), abs(j)) >= layers - 1)
+    ]
+    lengths = [math.hypot(k * cell[2], i * cell[0], j * cell[1]) for k, i, j in moves]
+    return np.array(moves), np.array(lengths)
