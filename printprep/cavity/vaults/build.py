@@ -152,4 +152,6 @@ def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:
     kept = [piece for piece in pieces if piece.volume() >= least]
     if len(kept) == len(pieces):
         return cavity
+    if len(kept) == 1:
+        return kept[0]
     return together(kept) if kept else Manifold()
