@@ -50,30 +50,38 @@ class Sets:
         By walking toward the sample that holds the node lowest, in shrinking steps.  (The centre of
         a smallest enclosing ball is found so: Bădoiu and Clarkson 2003.)
         """
+        x, y, z = np.ascontiguousarray(self.points_mm.T)
         place, slack = places.copy(), members.radius_mm - OVERLAP_MM
         best = np.column_stack([place, np.full(len(place), -np.inf)])
-        number = np.arange(len(self.points_mm))
+        number = np.arange(len(z))
         for step in range(steps):
-            away = self.points_mm[:, :2] - place[self.owner]
-            d = np.hypot(away[:, 0], away[:, 1])
-            limit = self.points_mm[:, 2] - np.maximum(d - slack, 0.0) / members.tan
+            d = self._away(x, y, place)
+            limit = z - np.maximum(d - slack, 0.0) / members.tan
             least = np.minimum.reduceat(limit, self.start)
             better = least > best[:, 2]
             best[better] = np.column_stack([place, least])[better]
-            holds = np.where(limit == least[self.owner], number, len(number))
+            holds = np.where(limit == least.take(self.owner), number, len(number))
             worst = np.minimum.reduceat(holds, self.start)
-            place = place + away[worst] / (step + 2)
+            place += (self.points_mm[worst, :2] - place) / (step + 2)
         return best
+
+    def _away(self, x: Float, y: Float, places: Float) -> Float:
+        """(m,) how far points (x, y) are from the places (s, 2) of their sets."""
+        dx, dy = x - places[:, 0].take(self.owner), y - places[:, 1].take(self.owner)
+        dx *= dx
+        dy *= dy
+        dx += dy
+        return np.sqrt(dx, out=dx)
 
     def volume_mm3(self, nodes: Float, members: Members, area_mm2: float) -> Float:
         """(s,) what funnels on nodes (s, 3) fill under their sets, a sample standing for an area.
 
         inf where one would carry farther or higher than a funnel may.
         """
-        away = self.points_mm - nodes[self.owner]
-        d = np.hypot(away[:, 0], away[:, 1])
-        thick = away[:, 2] - np.maximum(d - members.radius_mm, 0.0) / members.tan
-        beyond = (d > REACH_MM) | (away[:, 2] > RISE_MM)
+        x, y, z = np.ascontiguousarray(self.points_mm.T)
+        d, above = self._away(x, y, nodes[:, :2]), z - nodes[:, 2].take(self.owner)
+        thick = above - np.maximum(d - members.radius_mm, 0.0) / members.tan
+        beyond = (d > REACH_MM) | (above > RISE_MM)
         rise = np.maximum(self.tops_mm - nodes[:, 2], 0.0)
         narrow, wide = members.radius_mm, members.radius_mm + rise * members.tan
         whole = np.pi / 3 * rise * (narrow**2 + narrow * wide + wide**2)
