@@ -148,11 +148,12 @@ def _candidates(corners: Float, columns: Float) -> Iterator[tuple[Int, Int]]:
     stretch = 4 * max(float(np.ptp(columns[:, 0])), np.finfo(np.float64).tiny)
     key = row * stretch + (columns[:, 0] - low[0])
     order = np.argsort(key, kind="stable")
-    bands = (corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1))
-    first, last = (
-        np.clip(np.floor((y - low[1]) / height).astype(np.int64) + step, 0, rows)
-        for y, step in zip(bands, (-1, 2), strict=True)
+    # Rows of triangles are found as those of columns are, so rounding parts none that meet.
+    lowest_row, highest_row = (
+        np.minimum(np.floor((y - low[1]) / height).astype(np.int64), rows - 1)
+        for y in (corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1))
     )
+    first, last = np.maximum(lowest_row, 0), np.maximum(highest_row + 1, 0)
     triangle, strip = _runs(np.arange(len(corners)), first, last)
     left, right = _covered(corners[triangle], low[1] + strip * height, height)
     slack = 1e-9 * stretch
