@@ -70,13 +70,29 @@ def test_of_a_ball_the_cap_is_sampled():
     assert len(samples) * SPACING_MM**2 == pytest.approx(area, rel=0.03)
 
 
-def test_capitals_carry_every_sample():
-    samples = ceiling_samples(Manifold.sphere(10, 128), 40.0)
-    nodes = cover(samples, MEMBERS, SPACING_MM**2).node_mm
+def carried(samples: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """Whether each sample is within reach of a funnel on one of the nodes."""
     d = np.hypot(*(samples[:, None, :2] - nodes[None, :, :2]).transpose(2, 0, 1))
     rise = samples[:, None, 2] - nodes[None, :, 2]
-    reach = MEMBERS.radius_mm + rise * MEMBERS.tan - OVERLAP_MM
-    assert ((rise >= -1e-9) & (d <= reach + 1e-6)).any(axis=1).all()
+    reach = np.minimum(MEMBERS.radius_mm + rise * MEMBERS.tan - OVERLAP_MM, REACH_MM)
+    return ((rise >= -1e-9) & (rise <= RISE_MM) & (d <= reach + 1e-6)).any(axis=1)
+
+
+def test_capitals_carry_every_sample():
+    samples = ceiling_samples(Manifold.sphere(10, 128), 40.0)
+    assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2).node_mm).all()
+
+
+@pytest.mark.parametrize("seed", [0, 6])
+def test_capitals_carry_every_sample_of_a_jagged_ceiling(seed):
+    """Groups over its steps may grow wider than a funnel reaches."""
+    chance = np.random.default_rng(seed)
+    x, y = np.meshgrid(*[SPACING_MM * np.arange(60)] * 2, indexing="ij")
+    z = np.zeros(x.shape)
+    for height, along, across, phase in chance.uniform([4, 0.2, 0.2, 0], [9, 1.2, 1.2, 6], (3, 4)):
+        z += height * np.sin(along * x + across * y + phase)
+    samples = np.stack([x, y, z], axis=-1)[chance.random(x.shape) < 0.7]
+    assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2).node_mm).all()
 
 
 def test_of_two_sets_each_gets_its_highest_funnel():

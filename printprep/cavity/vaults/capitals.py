@@ -62,7 +62,10 @@ def cover(samples: Float, members: Members, area_mm2: float) -> Capitals:
     """Capitals for all samples (n, 3), each of which stands for ``area_mm2`` of ceiling."""
     if len(samples) == 0:
         return Capitals(np.zeros((0, 3)), np.zeros(0))
-    return _tightened(_grouped(samples, members, area_mm2), samples, members)
+    nodes = _grouped(samples, members, area_mm2)
+    # On jagged ceilings a group may grow wider than its funnel: what that leaves is carried singly.
+    left = np.delete(samples, _carried(nodes, samples, members)[1], axis=0)
+    return _tightened(np.concatenate([nodes, left]), samples, members)
 
 
 def _grouped(samples: Float, members: Members, area_mm2: float) -> Float:
@@ -231,4 +234,5 @@ def _higher(nodes: Float, samples: Sequence[Float], members: Members) -> Float:
     """(k, 3) the highest nodes found that carry all of their samples, or those they have."""
     sets = Sets.of(np.concatenate(samples), np.array([len(own) for own in samples]))
     found = sets.highest(nodes[:, :2], members, _MORE_STEPS)
-    return np.where((found[:, 2] > nodes[:, 2])[:, None], found, nodes)
+    better = (found[:, 2] > nodes[:, 2]) & (sets.farthest_mm(found) <= REACH_MM)
+    return np.where(better[:, None], found, nodes)

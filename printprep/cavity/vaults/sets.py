@@ -44,6 +44,12 @@ class Sets:
         result: Float = np.maximum.reduceat(self.points_mm[:, 2], self.start)
         return result
 
+    def farthest_mm(self, nodes: Float) -> Float:
+        """(s,) how far the farthest point of each is from its node (s, 3), seen from above."""
+        x, y = np.ascontiguousarray(self.points_mm[:, :2].T)
+        result: Float = np.maximum.reduceat(self._away(x, y, nodes), self.start)
+        return result
+
     def highest(self, places: Float, members: Members, steps: int) -> Float:
         """(s, 3) the highest nodes found that carry all of their sets, sought from places (s, 2).
 
