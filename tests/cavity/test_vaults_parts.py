@@ -122,6 +122,29 @@ def test_a_wide_flat_ceiling_takes_few_funnels():
     assert 900 < discs.sum() < 1.3 * 900
 
 
+def test_columns_of_a_lattice_know_the_room_at_every_height():
+    """Of a bubble in a ball: what each column says of points one by one, and nothing beyond."""
+    void = Manifold.sphere(6, 48) - Manifold.sphere(3, 48)
+    dexels, z = Dexels.of(void, 0.35), np.linspace(-8, 8, 40)
+    places = dexels.columns_mm().reshape(-1, 2)
+    points = np.stack(np.broadcast_arrays(*places.T[..., None], z), axis=-1)
+    at = dexels.at_heights(z)
+    assert (at[:-1] == dexels.contains(points)).all()
+    assert at.any() and not at[-1].any()
+    assert (dexels.nearest(places) == np.arange(len(places))).all()
+    assert dexels.nearest(dexels.low_mm - [0.2, 0.0]) == -1
+
+
+def test_in_the_middle_of_a_box_the_way_down_is_straight():
+    """To the highest cell in the floor; in the shell and beyond there is none to go."""
+    landings = Landings.of(Dexels.of(room(), 0.35), MEMBERS, 15.0)
+    cells = np.arange(landings.length_mm.shape[2])
+    z = landings.low_mm[2] + landings.cell_mm[2] * cells
+    way = landings.way_mm(np.column_stack([np.zeros((len(z), 2)), z]))
+    assert way == pytest.approx(np.where(z > 2, z - z[z < 2].max(), 0))
+    assert landings.way_mm(np.array([[4.0, 0.0, -5.0], [90.0, 0.0, -5.0]])).tolist() == [0, 0]
+
+
 @pytest.mark.parametrize("length", [5.0, 14.4, 40.0, 90.0])
 def test_a_column_sways_no_more_than_the_slenderest_thin_one(length):
     """The end of a cantilever gives way by ℓ³ / t⁴."""
