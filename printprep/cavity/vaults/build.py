@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.capitals import cover
+from printprep.cavity.vaults.capitals import Capitals, cover
 from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
 from printprep.cavity.vaults.dexels import Dexels
 from printprep.cavity.vaults.feet import set_feet
-from printprep.cavity.vaults.forest import Axes, Forest
+from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.gussets import gussets
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members, built_for, slope_deg
-from printprep.cavity.vaults.mend import mending
+from printprep.cavity.vaults.mend import mending, patch_points
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
 from printprep.overhang.limits import Acceptance
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.profiles import Profile
+    from printprep.types import Float
 
 DEXEL_MM = 0.35
 # Faces may move so much when the finished cavity is simplified: a fiftieth of the slicer's off.
@@ -74,24 +76,18 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
 
     members, rule = Members.of(profile), built_for(profile)
     samples = ceiling_samples(room, slope_deg(profile))
-    capitals = cover(samples, members, SPACING_MM**2)
-    forest = Forest()
-    if len(samples):
-        dexels = Dexels.of(room, DEXEL_MM)
-        landings = Landings.of(dexels, members, float(capitals.node_mm[:, 2].max()))
-        raise_columns(capitals.node_mm, dexels, landings, members, forest)
-        set_feet(forest, dexels, members)
+    capitals, forest = _raised(samples, room, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
     cavity = _without(room, wide + narrow, members)
-    flagged = list(unsupported_ceilings(cavity, rule, PHASES).patches)
+    flagged = unsupported_ceilings(cavity, rule, PHASES).patches
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
-        under, props = _mended(cavity, flagged, rule, members, forest.axes())
-        cavity = _without(cavity, under + props, members)
-        flagged = list(_around(under + props, cavity, rule).patches)
+        under, props = _mended(cavity, flagged, rule, members, capitals, forest)
+        cavity = roomy(cavity - united(under + props), members.thickness_mm)
+        flagged = _around(under + props, cavity, rule).patches
         wide, narrow = wide + under, narrow + props
-    left = Unsupported(tuple(flagged))
+    left = Unsupported(flagged)
     return Vaults(
         cavity=cavity,
         solids=room - cavity if wide else Manifold(),
@@ -103,6 +99,19 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
         unsupported_mm2=left.area_mm2,
         islands=left.islands,
     )
+
+
+def _raised(samples: Float, room: Manifold, members: Members) -> tuple[Capitals, Forest]:
+    """Capitals for all samples (n, 3), and the columns under them."""
+    forest = Forest()
+    if len(samples) == 0:
+        return Capitals.none(), forest
+    dexels = Dexels.of(room, DEXEL_MM)
+    capitals = cover(samples, members, SPACING_MM**2, dexels)
+    landings = Landings.of(dexels, members, float(capitals.node_mm[:, 2].max()))
+    raise_columns(capitals.node_mm, dexels, landings, members, forest)
+    set_feet(forest, dexels, members)
+    return capitals, forest
 
 
 def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:
@@ -117,19 +126,29 @@ def _mended(
     flagged: Sequence[Flagged],
     rule: Acceptance,
     members: Members,
-    axes: Axes,
+    capitals: Capitals,
+    forest: Forest,
 ) -> tuple[list[Frustum], list[Frustum]]:
-    """Funnels and their columns, until blocks cut from around all patches are flagged no more."""
+    """Capitals and columns, until blocks cut from around all patches are flagged no more.
+
+    Capitals are widened where that will do; what is left gets funnels and columns of its own.
+    """
     middles = np.array([patch.at_mm for patch in flagged])
-    dexels = Dexels.of(cavity, DEXEL_MM)
     block = cavity ^ Suspects(middles, middles).window(np.full(3, BLOCK_MM))
+    dexels: Dexels | None = None
     wide: list[Frustum] = []
     narrow: list[Frustum] = []
     for _ in range(MOST_MENDINGS):
-        under, props = mending(dexels, flagged, rule.layer_mm, members, axes)
+        points = np.concatenate([patch_points(patch, rule.layer_mm) for patch in flagged])
+        under, points = gussets(points, capitals, forest, members)
+        props: list[Frustum] = []
+        if len(points):
+            dexels = dexels or Dexels.of(cavity, DEXEL_MM)
+            more, props = mending(dexels, points, members, forest.axes())
+            under += more
         wide, narrow = wide + under, narrow + props
         block = block - united(under + props)
-        flagged = list(_around(under, block, rule).patches)
+        flagged = _around(under + props, block, rule).patches
         if not flagged:
             break
     return wide, narrow

@@ -6,8 +6,8 @@ where d ≤ r + (q_z − n_z) tan θ − s; over q it is q_z − n_z − max(0, 
 
 Patches of ceiling, each with a funnel of its own, are evened out, each sample going to the funnel
 that reaches farthest beyond it, and merged in pairs where a common funnel saves volume: what a
-funnel costs is what it fills, mostly under its samples, and a fixed volume for the column.  The
-result is flat in that volume; fewer funnels are quicker to build.
+funnel costs is what it fills, mostly under its samples, and its column, as far as that goes alone:
+to the floor, or where the room is high to the next column that it meets.
 """
 
 from __future__ import annotations
@@ -22,11 +22,15 @@ from printprep.cavity.vaults.sets import OVERLAP_MM, REACH_MM, RISE_MM, Sets
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from printprep.cavity.vaults.dexels import Dexels
     from printprep.cavity.vaults.members import Members
     from printprep.types import Float, Int
 
-# What a column is taken to cost before it is known.
-COLUMN_MM3 = 8.0
+# What a column is taken to cost before it is known: this share of one that goes straight to the
+# floor, but no more than until it meets another, and no less than what is worth a funnel.
+COLUMN_SHARE = 0.8
+MOST_COLUMN_MM3 = 5.0
+LEAST_COLUMN_MM3 = 2.0
 # Side of the patches to begin with.
 PATCH_MM = 2.6
 NEIGHBOURS = 6
@@ -44,6 +48,10 @@ class Capitals:
     node_mm: Float
     top_mm: Float
 
+    @staticmethod
+    def none() -> Capitals:
+        return Capitals(np.zeros((0, 3)), np.zeros(0))
+
 
 @dataclass(frozen=True, eq=False)
 class _Groups:
@@ -54,33 +62,50 @@ class _Groups:
     cost_mm3: Float
 
     @staticmethod
-    def of(sets: Sets, nodes: Float, members: Members, area_mm2: float) -> _Groups:
-        return _Groups(sets, nodes, COLUMN_MM3 + sets.volume_mm3(nodes, members, area_mm2))
+    def of(sets: Sets, nodes: Float, price: _Price) -> _Groups:
+        return _Groups(sets, nodes, price.mm3(sets, nodes))
 
 
-def cover(samples: Float, members: Members, area_mm2: float) -> Capitals:
+@dataclass(frozen=True, eq=False)
+class _Price:
+    """What funnels and their columns cost in a room, a sample standing for an area of ceiling."""
+
+    members: Members
+    area_mm2: float
+    room: Dexels
+
+    def mm3(self, sets: Sets, nodes: Float) -> Float:
+        """(s,) for funnels on nodes (s, 3) and the columns under them."""
+        section_mm2 = np.pi * self.members.radius_mm**2
+        column = COLUMN_SHARE * section_mm2 * self.room.headroom_mm(nodes)
+        column = np.clip(column, LEAST_COLUMN_MM3, MOST_COLUMN_MM3)
+        result: Float = column + sets.volume_mm3(nodes, self.members, self.area_mm2)
+        return result
+
+
+def cover(samples: Float, members: Members, area_mm2: float, room: Dexels) -> Capitals:
     """Capitals for all samples (n, 3), each of which stands for ``area_mm2`` of ceiling."""
     if len(samples) == 0:
-        return Capitals(np.zeros((0, 3)), np.zeros(0))
-    nodes = _grouped(samples, members, area_mm2)
+        return Capitals.none()
+    nodes = _grouped(samples, _Price(members, area_mm2, room))
     # On jagged ceilings a group may grow wider than its funnel: what that leaves is carried singly.
     left = np.delete(samples, _carried(nodes, samples, members)[1], axis=0)
     return _tightened(np.concatenate([nodes, left]), samples, members)
 
 
-def _grouped(samples: Float, members: Members, area_mm2: float) -> Float:
+def _grouped(samples: Float, price: _Price) -> Float:
     """(k, 3) nodes of funnels that carry all samples."""
-    groups = _patches(samples, members, area_mm2)
+    groups = _patches(samples, price)
     for _ in range(ROUNDS):
-        groups = _evened(groups, members, area_mm2)
-        fewer = _merged(groups, members, area_mm2)
+        groups = _evened(groups, price)
+        fewer = _merged(groups, price)
         if fewer is None:
             return groups.node_mm
         groups = fewer
-    return _evened(groups, members, area_mm2).node_mm
+    return _evened(groups, price).node_mm
 
 
-def _patches(samples: Float, members: Members, area_mm2: float) -> _Groups:
+def _patches(samples: Float, price: _Price) -> _Groups:
     """Samples by the cell of space they lie in: rows of cells, every other shifted by a half."""
     cells = np.floor(samples / PATCH_MM).astype(np.int64)
     cells[:, 0] = np.floor(samples[:, 0] / PATCH_MM + cells[:, 1] % 2 / 2)
@@ -88,19 +113,19 @@ def _patches(samples: Float, members: Members, area_mm2: float) -> _Groups:
     sets = _by_label(samples, np.ravel(label))
     sizes = np.bincount(sets.owner)
     middles = np.add.reduceat(sets.points_mm[:, :2], sets.start) / sizes[:, None]
-    return _Groups.of(sets, sets.highest(middles, members, _STEPS), members, area_mm2)
+    return _Groups.of(sets, sets.highest(middles, price.members, _STEPS), price)
 
 
-def _evened(groups: _Groups, members: Members, area_mm2: float) -> _Groups:
+def _evened(groups: _Groups, price: _Price) -> _Groups:
     """Each sample to the funnel that reaches farthest beyond it, then each funnel anew (Lloyd
     1982): groups grow round, and of one size."""
     sets, nodes = groups.sets, groups.node_mm
     for _ in range(EVENINGS):
-        used, label = np.unique(_farthest_reaching(sets, nodes, members), return_inverse=True)
+        used, label = np.unique(_farthest_reaching(sets, nodes, price.members), return_inverse=True)
         sets, before = _by_label(sets.points_mm, label), nodes[used]
-        nodes = sets.highest(before[:, :2], members, _STEPS)
+        nodes = sets.highest(before[:, :2], price.members, _STEPS)
         nodes = np.where((before[:, 2] > nodes[:, 2])[:, None], before, nodes)
-    return _Groups.of(sets, nodes, members, area_mm2)
+    return _Groups.of(sets, nodes, price)
 
 
 def _farthest_reaching(sets: Sets, nodes: Float, members: Members) -> Int:
@@ -119,7 +144,7 @@ def _farthest_reaching(sets: Sets, nodes: Float, members: Members) -> Int:
     return result
 
 
-def _merged(groups: _Groups, members: Members, area_mm2: float) -> _Groups | None:
+def _merged(groups: _Groups, price: _Price) -> _Groups | None:
     """Groups of which pairs became one where that saves volume, those first that save most."""
     sets, nodes, cost = groups.sets, groups.node_mm.copy(), groups.cost_mm3
     sizes = np.bincount(sets.owner)
@@ -127,8 +152,8 @@ def _merged(groups: _Groups, members: Members, area_mm2: float) -> _Groups | Non
     joint = Sets.of(*_joined(sets, sizes, one, other))
     share = (sizes[one] / (sizes[one] + sizes[other]))[:, None]
     between = share * nodes[one, :2] + (1 - share) * nodes[other, :2]
-    common = joint.highest(between, members, _STEPS)
-    together = COLUMN_MM3 + joint.volume_mm3(common, members, area_mm2)
+    common = joint.highest(between, price.members, _STEPS)
+    together = price.mm3(joint, common)
     apart = cost[one] + cost[other]
     gain = np.subtract(apart, together, out=np.zeros_like(apart), where=np.isfinite(together))
     pairs = _matched(one, other, gain)
@@ -140,7 +165,7 @@ def _merged(groups: _Groups, members: Members, area_mm2: float) -> _Groups | Non
     into[other] = one
     label = np.cumsum(into == np.arange(len(nodes)))[into] - 1
     kept = np.delete(nodes, other, axis=0)
-    return _Groups.of(_by_label(sets.points_mm, label[sets.owner]), kept, members, area_mm2)
+    return _Groups.of(_by_label(sets.points_mm, label[sets.owner]), kept, price)
 
 
 def _by_label(points: Float, label: Int) -> Sets:

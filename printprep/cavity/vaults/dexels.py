@@ -51,12 +51,22 @@ class Dexels:
 
     def contains(self, points: Float) -> Bool:
         """(…,) whether points (…, 3) lie in the room."""
+        _, crossed, valid = self._sought(points)
+        result: Bool = valid & (crossed % 2 == 1)
+        return result
+
+    def headroom_mm(self, points: Float) -> Float:
+        """(…,) how far down the room goes on below points (…, 3); 0 for those not in it."""
+        key, crossed, valid = self._sought(points)
+        below = self.keys[np.maximum(crossed - 1, 0)]
+        return np.where(valid & (crossed % 2 == 1), key - below, 0.0)
+
+    def _sought(self, points: Float) -> tuple[Float, Int, Bool]:
+        """Keys of points, how many crossings come before each, whether it is on the lattice."""
         column, height = self.nearest(points[..., :2]), points[..., 2] - self.floor_mm
         valid = (column >= 0) & (height > 0) & (height < self.span_mm)
         key = np.where(valid, column * self.span_mm + height, -1.0)
-        crossed: Int = np.searchsorted(self.keys, key)
-        result: Bool = valid & (crossed % 2 == 1)
-        return result
+        return key, np.searchsorted(self.keys, key), valid
 
     def nearest(self, places: Float) -> Int:
         """(…,) numbers of the columns nearest to places (…, 2), −1 beyond the lattice."""

@@ -16,8 +16,6 @@ from printprep.cavity.vaults.forest import Axes, Forest
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, section
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from printprep.cavity.vaults.dexels import Dexels
     from printprep.cavity.vaults.members import Members
     from printprep.overhang.rule import Flagged
@@ -28,20 +26,15 @@ GUSSET_STEPS = 3
 
 
 def mending(
-    dexels: Dexels,
-    flagged: Sequence[Flagged],
-    layer_mm: float,
-    members: Members,
-    axes: Axes,
+    dexels: Dexels, points: Float, members: Members, axes: Axes
 ) -> tuple[list[Frustum], list[Frustum]]:
-    """Funnels under flagged patches, and a column for each.
+    """Funnels under points (n, 3) of flagged patches, and a column for each.
 
     It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick as the
     column it enters.
     """
     members = replace(members, lean_deg=members.theta_deg)
-    points = np.concatenate([_points(patch, layer_mm) for patch in flagged])
-    capitals = cover(points, members, SPACING_MM**2)
+    capitals = cover(points, members, SPACING_MM**2, dexels)
     nodes = capitals.node_mm
     deepest = float(nodes[:, 2].max()) - dexels.floor_mm + STEP_MM
     price, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
@@ -74,7 +67,7 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     return Frustum(np.concatenate([under + entered, foot + own, node + own]), 2 * half)
 
 
-def _points(patch: Flagged, layer_mm: float) -> Float:
+def patch_points(patch: Flagged, layer_mm: float) -> Float:
     """(n, 3) its outline and its middle, thinned, where the void under it was cut."""
     outline = np.concatenate([*patch.outline_mm, [patch.at_mm[:2]]])
     _, first = np.unique(np.floor(outline / (SPACING_MM / 2)), axis=0, return_index=True)
