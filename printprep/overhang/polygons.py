@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 ARC_SEGMENTS = 16
 # Clipping moves corners by its own rounding; the same contour is still found again within this.
 SAME_MM = 1e-3
+# A window around many boxes is made of such cells.
+CELL_MM = 2.0
 # Regions below this are what clipping rounds off.
 LEAST_AREA_MM2 = 1e-4
 
@@ -51,6 +53,19 @@ def windows(outlines: Sequence[Float], margin_mm: float) -> CrossSection:
         low, high = outline.min(axis=0) - margin_mm, outline.max(axis=0) + margin_mm
         boxes.append(CrossSection.square((high - low).tolist()).translate(low.tolist()))
     return CrossSection.batch_boolean(boxes, OpType.Add)
+
+
+def cells(low_mm: Float, high_mm: Float) -> CrossSection:
+    """The cells of a lattice that boxes (n, 2) meet, as one region."""
+    from manifold3d import CrossSection, OpType
+
+    first, last = np.floor(low_mm / CELL_MM), np.floor(high_mm / CELL_MM) + 1
+    spans = np.unique(np.hstack([first, last]), axis=0) * CELL_MM
+    squares = [
+        CrossSection.square((span[2:] - span[:2]).tolist()).translate(span[:2].tolist())
+        for span in spans
+    ]
+    return CrossSection.batch_boolean(squares, OpType.Add)
 
 
 def new_pieces(here: CrossSection, below: CrossSection) -> list[Float]:

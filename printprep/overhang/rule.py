@@ -25,6 +25,7 @@ import numpy as np
 
 from printprep.overhang.polygons import (
     LEAST_AREA_MM2,
+    cells,
     centroid,
     closed,
     grown,
@@ -102,10 +103,7 @@ def unsupported_ceilings(
         suspects = Suspects.of(cavity, rule)
     if not len(suspects):
         return Unsupported(())
-    # Where the window ends above, ceilings are flagged that are none: too far to touch a suspect.
-    around = np.array([AROUND_MM, AROUND_MM, 2 * rule.layer_mm])
-    void = cavity ^ suspects.window(around)
-    return Unsupported(tuple(p for phase in phases for p in _judged(void, rule, phase, suspects)))
+    return Unsupported(tuple(p for phase in phases for p in _judged(cavity, rule, phase, suspects)))
 
 
 def _judged(
@@ -118,13 +116,16 @@ def _judged(
         if not near.any():
             continue
         low, high = suspects.low_mm[near, :2], suspects.high_mm[near, :2]
-        below = cut[1] if cut and cut[0] == under else void.slice(under).simplify(SIMPLIFY_MM)
-        here = void.slice(middle).simplify(SIMPLIFY_MM)
+        below = cut[1] if cut and cut[0] == under else void.slice(under)
+        here = void.slice(middle)
         cut = middle, here
-        if not below.is_empty():
-            for patch in _ceilings(here, below, bottom, rule):
-                if _touches(patch, low - rule.off_mm, high + rule.off_mm):
-                    yield patch
+        if below.is_empty():
+            continue
+        window = cells(low - AROUND_MM, high + AROUND_MM)
+        here, below = ((layer ^ window).simplify(SIMPLIFY_MM) for layer in (here, below))
+        for patch in _ceilings(here, below, bottom, rule):
+            if _touches(patch, low - rule.off_mm, high + rule.off_mm):
+                yield patch
 
 
 def _touches(patch: Flagged, low: Float, high: Float) -> bool:

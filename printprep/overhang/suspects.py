@@ -1,18 +1,28 @@
-"""Where alone a void can have what the acceptance rule flags: shallow faces, keels and tips.
+"""Where alone a void can have what the acceptance rule flags: shallow faces, keels, tips, grooves.
 
-Notation: t = (off − c) / h, the tangent of the steepest overhang that always passes (limits.py); a
-way down falls at least as steeply as that, |Δxy| ≤ t |Δz|.
+Notation: s the tangent of a face's overhang, u the unit vector in which it faces, seen from above;
+T = off / h and t = (off − c) / h (limits.py).  A way down falls |Δxy| ≤ T |Δz|.
 
-From a point of the ceiling follow ways down on the surface.  A face that leans no more than t has
-one, its line of steepest descent, until it ends at an edge.  Either a face beyond goes on down, or
-both faces fall toward the edge, a keel of material that hangs in the void, and the edge itself must
-be a way down; a corner has one where an edge or a face that meets there does.  Where that never
-fails there is material a layer deeper within h · t = off − c, so nothing of the layer above is
-flagged.  Hence every flagged point lies within off of a shallow face, of a keel that is no way
-down, or of a tip without any; all others need not be sliced.
+What is flagged is either material of the layer above or void that closing fills.
 
-A keel between faces that just pass, as on a funnel's polygon, leans a little more than they do; up
-to ``KEEL`` times t it passes: what sticks out is a corner of a few µm.
+Material.  From a point of the ceiling follow ways down on the surface.  A face with s ≤ T has one,
+its line of steepest descent, until it ends at an edge.  Either a face beyond goes on down, or both
+faces fall toward the edge, a keel of material that hangs in the void, and the edge itself must be
+a way down; a corner has one where an edge or a face that meets there does.  Where that never fails
+there is material a layer deeper within h T = off.  Hence flagged material lies within off of a
+*shallow* face, s > T, of a *keel* that is no way down, or of a *tip* without any.
+
+Void.  Closing fills a point p where no disc of radius c in the void reaches it: between walls A and
+B, on the arc of a disc no larger that touches both, at distances of them with
+δ_A + δ_B ≤ c (1 − u_A·u_B).  Where it is held by three walls instead, two of them face each other
+by 120° or more, and the sum is at most 2c.  It is flagged only where there is no material a layer
+deeper within off of it, δ + h s > off for both; so only where
+
+    h (s_A + s_B) > 2 off − c min(2, (1 − u_A·u_B) 4/3),
+
+one of them with s > t.  Two such walls close above p, within c / t, in an edge or a corner where
+both meet: a *groove*.  (A slot narrower than 2c that goes on upward between them has none: a strip
+narrower than c would be missed there.)
 """
 
 from __future__ import annotations
@@ -23,18 +33,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.weld import directed_edges
+from printprep.overhang.grooves import groove_depth_mm, grooves
+from printprep.overhang.surface import Surface
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.overhang.limits import Acceptance
-    from printprep.types import Bool, Float, Int
+    from printprep.types import Float
 
-KEEL = 1.05
-_EXACT = 1e-9
-# The window around suspects is made of cells of these sides.
-CELL_MM = np.array([2.0, 2.0, 0.4])
+# Of off: slices are simplified, coordinates rounded, and polygons stand for round funnels.
+SLACK_MM = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +62,15 @@ class Suspects:
         vertices, faces = arrays(void)
         if len(faces) == 0:
             return Suspects(np.zeros((0, 3)), np.zeros((0, 3)))
-        surface = _Surface.of(vertices, faces, (rule.off_mm - rule.closing_mm) / rule.layer_mm)
+        surface = Surface.of(vertices, faces, (rule.off_mm - SLACK_MM) / rule.layer_mm)
+        closing = surface.vertices[grooves(surface, rule)]
+        # What a groove closes lies below it.
+        closing = np.concatenate([closing, closing - [0.0, 0.0, groove_depth_mm(rule)]], axis=1)
         boxes = [
             vertices[faces[surface.shallow]],
-            vertices[surface.keels()],
+            vertices[surface.steep_keels()],
             vertices[surface.tips()][:, None],
+            closing,
         ]
         return Suspects(
             np.concatenate([box.min(axis=1) for box in boxes]),
@@ -70,106 +83,3 @@ class Suspects:
         for low, high in zip(low_mm, high_mm, strict=True):
             met |= ((self.low_mm <= high) & (self.high_mm >= low)).all(axis=1)
         return Suspects(self.low_mm[met], self.high_mm[met])
-
-    def window(self, around_mm: Float) -> Manifold:
-        """A solid that reaches ``around_mm`` (3,) at least beyond every suspect's box."""
-        from manifold3d import Manifold, OpType
-
-        first = np.floor((self.low_mm - around_mm) / CELL_MM).astype(np.int64)
-        last = np.floor((self.high_mm + around_mm) / CELL_MM).astype(np.int64)
-        boxes = []
-        for low, high in _bricks(first, last):
-            cube = Manifold.cube((CELL_MM * (high - low)).tolist())
-            boxes.append(cube.translate((CELL_MM * low).tolist()))
-        return Manifold.batch_boolean(boxes, OpType.Add) if boxes else Manifold()
-
-
-@dataclass(frozen=True, eq=False)
-class _Surface:
-    """A closed mesh with unit normals, seen as ceilings; shallow : (m,) faces that lean too far."""
-
-    vertices: Float
-    faces: Int
-    normals: Float
-    tan: float
-    shallow: Bool
-
-    @staticmethod
-    def of(vertices: Float, faces: Int, tan: float) -> _Surface:
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        normals = np.cross(b - a, c - a)
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-        level = np.hypot(normals[:, 0], normals[:, 1])
-        return _Surface(vertices, faces, normals, tan, normals[:, 2] > tan * level + _EXACT)
-
-    def keels(self) -> Int:
-        """(k, 2) ends of hanging edges from which neither face nor the edge is a way down."""
-        edges = directed_edges(self.faces)
-        face = np.arange(len(edges)) // 3
-        opposite = self.faces[:, [2, 0, 1]].ravel()
-        ends = np.sort(edges, axis=1)
-        order = np.argsort(ends[:, 0] * len(self.vertices) + ends[:, 1], kind="stable")
-        one, other = order[0::2], order[1::2]
-        mine, theirs = self.normals[face[one]], self.normals[face[other]]
-        away = self.vertices[opposite[other]] - self.vertices[ends[one, 0]]
-        hanging = np.einsum("ij,ij->i", mine, away) > 0  # the void bends around material
-        hanging &= (mine[:, 2] > 0) | (theirs[:, 2] > 0)
-        hanging &= ~self.shallow[face[one]] & ~self.shallow[face[other]]
-        one, mine, theirs = one[hanging], mine[hanging], theirs[hanging]
-        kept = ~(_falls_into(mine, theirs) | _falls_into(theirs, mine))
-        found = ends[one[kept]]
-        way = self.vertices[found[:, 1]] - self.vertices[found[:, 0]]
-        level, fall = np.hypot(way[:, 0], way[:, 1]), np.abs(way[:, 2])
-        result: Int = found[level > KEEL * self.tan * fall]
-        return result
-
-    def tips(self) -> Int:
-        """(k,) corners of ceilings from which no edge and no face is a way down."""
-        held = np.zeros(len(self.vertices), dtype=bool)
-        edges = directed_edges(self.faces)
-        way = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
-        level = np.hypot(way[:, 0], way[:, 1])
-        held[edges[level <= -KEEL * self.tan * way[:, 2], 0]] = True
-        steep = np.flatnonzero(~self.shallow)
-        normals = self.normals[steep]
-        down = normals * normals[:, 2:] - np.array([0.0, 0.0, 1.0])  # steepest descent
-        for k in range(3):
-            corner, after, before = (self.faces[steep, (k + turn) % 3] for turn in range(3))
-            left = self.vertices[after] - self.vertices[corner]
-            right = self.vertices[before] - self.vertices[corner]
-            within = np.einsum("ij,ij->i", np.cross(left, down), normals) >= -_EXACT
-            within &= np.einsum("ij,ij->i", np.cross(down, right), normals) >= -_EXACT
-            held[corner[within]] = True
-        ceiling = np.zeros(len(self.vertices), dtype=bool)
-        ceiling[self.faces[self.normals[:, 2] > 0]] = True
-        return np.flatnonzero(ceiling & ~held)
-
-
-def _falls_into(mine: Float, theirs: Float) -> Bool:
-    """Whether from an edge the way down on one face stays in its material, under the other face.
-
-    In the plane one below the edge material is where n · (x, y) ≥ n_z for both normals; the point
-    of the one boundary nearest to the edge must lie within the other.
-    """
-    level = np.maximum((mine[:, :2] ** 2).sum(axis=1), 1e-300)
-    nearest = mine[:, :2] * (np.maximum(mine[:, 2], 0.0) / level)[:, None]
-    result: Bool = (theirs[:, :2] * nearest).sum(axis=1) >= theirs[:, 2] - _EXACT
-    return result
-
-
-def _bricks(first: Int, last: Int) -> list[tuple[Int, Int]]:
-    """Cells within any of the boxes first..last (n, 3), as disjoint rows along z, [low, high)."""
-    first, last = (part.reshape(-1, 3) for part in (first, last))
-    cells = []
-    size = last - first + 1
-    for shape in np.unique(size, axis=0):
-        own = first[(size == shape).all(axis=1)]
-        steps = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3)
-        cells.append((own[:, None] + steps).reshape(-1, 3))
-    if not cells:
-        return []
-    every = np.unique(np.concatenate(cells), axis=0)
-    same = (every[1:, :2] == every[:-1, :2]).all(axis=1) & (every[1:, 2] == every[:-1, 2] + 1)
-    starts = np.flatnonzero(np.concatenate([[True], ~same]))
-    ends = np.append(starts[1:], len(every)) - 1
-    return [(every[a], every[b] + 1) for a, b in zip(starts, ends, strict=True)]

@@ -133,8 +133,7 @@ def _mended(
 
     Capitals are widened where that will do; what is left gets funnels and columns of its own.
     """
-    middles = np.array([patch.at_mm for patch in flagged])
-    block = cavity ^ Suspects(middles, middles).window(np.full(3, BLOCK_MM))
+    block = cavity ^ _blocks(flagged)
     dexels: Dexels | None = None
     wide: list[Frustum] = []
     narrow: list[Frustum] = []
@@ -152,6 +151,14 @@ def _mended(
         if not flagged:
             break
     return wide, narrow
+
+
+def _blocks(flagged: Sequence[Flagged]) -> Manifold:
+    """Cubes around all patches."""
+    from manifold3d import Manifold, OpType
+
+    cube = Manifold.cube((2 * BLOCK_MM,) * 3, center=True)
+    return Manifold.batch_boolean([cube.translate(patch.at_mm) for patch in flagged], OpType.Add)
 
 
 def _around(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:

@@ -1,0 +1,107 @@
+"""A void's surface seen as ceilings: slopes, keels of material that hang in it, and their tips."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.mesh.weld import directed_edges
+
+if TYPE_CHECKING:
+    from printprep.types import Bool, Float, Int
+
+_EXACT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A closed mesh; normals (m, 3) of unit length; steepest : largest tangent of a way down."""
+
+    vertices: Float
+    faces: Int
+    normals: Float
+    steepest: float
+
+    @staticmethod
+    def of(vertices: Float, faces: Int, steepest: float) -> Surface:
+        a, b, c = (vertices[faces[:, k]] for k in range(3))
+        normals = np.cross(b - a, c - a)
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        return Surface(vertices, faces, normals, steepest)
+
+    @cached_property
+    def slope(self) -> Float:
+        """(m,) tangents of the faces' overhang from the vertical; negative for floors."""
+        level = np.hypot(self.normals[:, 0], self.normals[:, 1])
+        result: Float = self.normals[:, 2] / np.maximum(level, 1e-300)
+        return result
+
+    @cached_property
+    def shallow(self) -> Bool:
+        """(m,) ceilings that are no way down."""
+        level = np.hypot(self.normals[:, 0], self.normals[:, 1])
+        result: Bool = self.normals[:, 2] > self.steepest * level + _EXACT
+        return result
+
+    @cached_property
+    def keels(self) -> tuple[Int, Float, Float]:
+        """Hanging edges between ways down neither of which falls into the other: (k, 2) their ends,
+        (k,) tangents of their own overhang, (k, 3) sums of the normals beside them."""
+        edges = directed_edges(self.faces)
+        face = np.arange(len(edges)) // 3
+        opposite = self.faces[:, [2, 0, 1]].ravel()
+        ends = np.sort(edges, axis=1)
+        order = np.argsort(ends[:, 0] * len(self.vertices) + ends[:, 1], kind="stable")
+        one, other = order[0::2], order[1::2]
+        mine, theirs = self.normals[face[one]], self.normals[face[other]]
+        away = self.vertices[opposite[other]] - self.vertices[ends[one, 0]]
+        hanging = np.einsum("ij,ij->i", mine, away) > 0  # the void bends around material
+        hanging &= (mine[:, 2] > 0) | (theirs[:, 2] > 0)
+        hanging &= ~self.shallow[face[one]] & ~self.shallow[face[other]]
+        one, mine, theirs = one[hanging], mine[hanging], theirs[hanging]
+        kept = ~(_falls_into(mine, theirs) | _falls_into(theirs, mine))
+        found = ends[one[kept]]
+        way = self.vertices[found[:, 1]] - self.vertices[found[:, 0]]
+        fall = np.maximum(np.abs(way[:, 2]), 1e-300)
+        return found, np.hypot(way[:, 0], way[:, 1]) / fall, mine[kept] + theirs[kept]
+
+    def steep_keels(self) -> Int:
+        """(k, 2) ends of the keels that are no way down."""
+        ends, slope, _ = self.keels
+        return ends[slope > self.steepest]
+
+    def tips(self) -> Int:
+        """(k,) corners of ceilings from which no edge and no face is a way down."""
+        held = np.zeros(len(self.vertices), dtype=bool)
+        edges = directed_edges(self.faces)
+        way = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
+        level = np.hypot(way[:, 0], way[:, 1])
+        held[edges[level <= -self.steepest * way[:, 2], 0]] = True
+        steep = np.flatnonzero(~self.shallow)
+        normals = self.normals[steep]
+        down = normals * normals[:, 2:] - np.array([0.0, 0.0, 1.0])  # steepest descent
+        for k in range(3):
+            corner, after, before = (self.faces[steep, (k + turn) % 3] for turn in range(3))
+            left = self.vertices[after] - self.vertices[corner]
+            right = self.vertices[before] - self.vertices[corner]
+            within = np.einsum("ij,ij->i", np.cross(left, down), normals) >= -_EXACT
+            within &= np.einsum("ij,ij->i", np.cross(down, right), normals) >= -_EXACT
+            held[corner[within]] = True
+        ceiling = np.zeros(len(self.vertices), dtype=bool)
+        ceiling[self.faces[self.normals[:, 2] > 0]] = True
+        return np.flatnonzero(ceiling & ~held)
+
+
+def _falls_into(mine: Float, theirs: Float) -> Bool:
+    """Whether from an edge the way down on one face stays in its material, under the other face.
+
+    In the plane one below the edge material is where n · (x, y) ≥ n_z for both normals; the point
+    of the one boundary nearest to the edge must lie within the other.
+    """
+    level = np.maximum((mine[:, :2] ** 2).sum(axis=1), 1e-300)
+    nearest = mine[:, :2] * (np.maximum(mine[:, 2], 0.0) / level)[:, None]
+    result: Bool = (theirs[:, :2] * nearest).sum(axis=1) >= theirs[:, 2] - _EXACT
+    return result
