@@ -22,8 +22,9 @@ KEEL = 1.05
 def grooves(surface: Surface, rule: Acceptance) -> Int:
     """(k, 2) ends of such edges; corners that are on none of them twice."""
     closing = _closing_corners(surface, rule)
-    edges = np.unique(np.sort(directed_edges(surface.faces), axis=1), axis=0)
-    edges = edges[closing[edges].all(axis=1)]
+    edges = directed_edges(surface.faces)
+    edges = np.sort(edges[closing[edges].all(axis=1)], axis=1)
+    edges = np.unique(edges, axis=0)
     closing[edges] = False
     alone = np.flatnonzero(closing)
     return np.concatenate([edges, np.stack([alone, alone], axis=1)])

@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
 
-from printprep.cavity.vaults.capitals import cover
+from printprep.cavity.vaults.capitals import Capitals, cover
 from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
-from printprep.cavity.vaults.dexels import Dexels
+from printprep.cavity.vaults.dexels import DEXEL_MM, Dexels
 from printprep.cavity.vaults.feet import set_feet
 from printprep.cavity.vaults.forest import Forest
+from printprep.cavity.vaults.gussets import gussets
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members
 from printprep.cavity.vaults.sets import OVERLAP_MM, REACH_MM, RISE_MM, Sets
@@ -41,8 +42,8 @@ def inscribed_radius(polygon: np.ndarray) -> float:
 
 def built(void: Manifold) -> tuple[np.ndarray, Forest]:
     samples = ceiling_samples(void, 40.0)
-    nodes = cover(samples, MEMBERS, SPACING_MM**2).node_mm
-    dexels = Dexels.of(void, 0.35)
+    dexels = Dexels.of(void, DEXEL_MM)
+    nodes = cover(samples, MEMBERS, SPACING_MM**2, dexels).node_mm
     forest = Forest()
     landings = Landings.of(dexels, MEMBERS, float(nodes[:, 2].max()))
     raise_columns(nodes, dexels, landings, MEMBERS, forest)
@@ -79,8 +80,10 @@ def carried(samples: np.ndarray, nodes: np.ndarray) -> np.ndarray:
 
 
 def test_capitals_carry_every_sample():
-    samples = ceiling_samples(Manifold.sphere(10, 128), 40.0)
-    assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2).node_mm).all()
+    ball = Manifold.sphere(10, 128)
+    samples = ceiling_samples(ball, 40.0)
+    capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(ball, DEXEL_MM))
+    assert carried(samples, capitals.node_mm).all()
 
 
 @pytest.mark.parametrize("seed", [0, 6])
@@ -92,7 +95,8 @@ def test_capitals_carry_every_sample_of_a_jagged_ceiling(seed):
     for height, along, across, phase in chance.uniform([4, 0.2, 0.2, 0], [9, 1.2, 1.2, 6], (3, 4)):
         z += height * np.sin(along * x + across * y + phase)
     samples = np.stack([x, y, z], axis=-1)[chance.random(x.shape) < 0.7]
-    assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2).node_mm).all()
+    below = Dexels.of(box(40, 40, 60).translate((0, 0, -30)), DEXEL_MM)
+    assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2, below).node_mm).all()
 
 
 def test_of_two_sets_each_gets_its_highest_funnel():
@@ -115,8 +119,9 @@ def test_no_funnel_carries_farther_than_it_may():
 
 def test_a_wide_flat_ceiling_takes_few_funnels():
     """Discs cover a plane at best 1.21-fold (Kershner 1939); these need only carry a lattice."""
-    samples = ceiling_samples(box(30, 30, 15), 40.0)
-    capitals = cover(samples, MEMBERS, SPACING_MM**2)
+    hall = box(30, 30, 15)
+    samples = ceiling_samples(hall, 40.0)
+    capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(hall, DEXEL_MM))
     rise = capitals.top_mm - capitals.node_mm[:, 2]
     discs = math.pi * (MEMBERS.radius_mm + rise * MEMBERS.tan - OVERLAP_MM) ** 2
     assert 900 < discs.sum() < 1.3 * 900
@@ -143,6 +148,75 @@ def test_in_the_middle_of_a_box_the_way_down_is_straight():
     way = landings.way_mm(np.column_stack([np.zeros((len(z), 2)), z]))
     assert way == pytest.approx(np.where(z > 2, z - z[z < 2].max(), 0))
     assert landings.way_mm(np.array([[4.0, 0.0, -5.0], [90.0, 0.0, -5.0]])).tolist() == [0, 0]
+
+
+def test_low_rooms_get_more_and_smaller_funnels():
+    """A column costs little there."""
+    tops = []
+    for height in (3.0, 30.0):
+        hall = box(30, 30, height)
+        samples = ceiling_samples(hall, 40.0)
+        capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(hall, DEXEL_MM))
+        tops.append(capitals.top_mm - capitals.node_mm[:, 2])
+    assert len(tops[0]) > len(tops[1])
+    assert tops[0].mean() < tops[1].mean()
+
+
+def test_headroom_is_what_is_below_in_the_room():
+    slab = box(4, 4, 1).translate((0, 0, 6))
+    dexels = Dexels.of(box(10, 10, 12).translate((0, 0, 2)) - slab, DEXEL_MM)
+    points = np.array([[3.0, 3, 10], [0, 0, 10], [0, 0, 6.5], [0, 0, 5], [8, 0, 5], [0, 0, 20]])
+    assert dexels.headroom_mm(points) == pytest.approx([8, 3, 0, 3, 0, 0])
+
+
+def capital(lean: float) -> tuple[Capitals, Forest]:
+    """One, 10 mm up, on a column that goes down 8 mm and ``lean`` times as far along x."""
+    node = np.array([0.0, 0.0, 10.0])
+    forest = Forest()
+    forest.stand(forest.plant(node), node + 8 * np.array([lean, 0.0, -1.0]))
+    return Capitals(node[None], np.array([12.0])), forest
+
+
+def beside(out: float, rise: float = 1.5) -> np.ndarray:
+    """Points over the +x side of that capital, so far beyond it."""
+    d = MEMBERS.radius_mm + rise * MEMBERS.tan + out
+    turn = np.radians([-4.0, 0.0, 4.0])
+    return np.column_stack([d * np.cos(turn), d * np.sin(turn), np.full(3, 10.0 + rise)])
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.4, 0.7])
+def test_a_gusset_reaches_what_a_capital_just_misses(lean):
+    points = beside(0.2)
+    (gusset,), left = gussets(points, *capital(lean), MEMBERS)
+    assert len(left) == 0
+    solid = united([gusset])
+    low = solid.bounding_box()[2]
+    assert 9 < low < 10  # from a little under the node
+    assert solid.slice(points[0, 2] + 0.1).area() > 0
+    for x, y in points[:, :2]:
+        probe = Manifold.cylinder(0.02, 0.05, 0.05, 8).translate((x, y, points[0, 2] + 0.05))
+        assert (probe - solid).is_empty()
+    normals = solid.to_mesh64()
+    corners = normals.vert_properties[normals.tri_verts.astype(np.int64)][:, :, :3]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    side = np.hypot(across[:, 0], across[:, 1])
+    hanging = (across[:, 2] < 0) & (corners[..., 2].max(axis=1) > low + 1e-6)
+    assert (-across[hanging, 2] <= side[hanging] / MEMBERS.tan * 1.05).all()
+
+
+def test_what_is_too_far_from_any_capital_gets_no_gusset():
+    found, left = gussets(beside(0.6), *capital(0.0), MEMBERS)
+    assert not found and len(left) == 3
+
+
+def test_a_column_that_leans_away_too_far_carries_no_gusset():
+    found, left = gussets(beside(0.2), *capital(-0.7), MEMBERS)
+    assert not found and len(left) == 3
+
+
+def test_without_capitals_there_are_no_gussets():
+    found, left = gussets(beside(0.2), Capitals.none(), Forest(), MEMBERS)
+    assert not found and len(left) == 3
 
 
 @pytest.mark.parametrize("length", [5.0, 14.4, 40.0, 90.0])

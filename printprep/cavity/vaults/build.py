@@ -10,18 +10,15 @@ import numpy as np
 from printprep.cavity.vaults.capitals import Capitals, cover
 from printprep.cavity.vaults.ceiling import SPACING_MM, ceiling_samples
 from printprep.cavity.vaults.columns import raise_columns
-from printprep.cavity.vaults.dexels import Dexels
+from printprep.cavity.vaults.dexels import DEXEL_MM, Dexels
 from printprep.cavity.vaults.feet import set_feet
 from printprep.cavity.vaults.forest import Forest
-from printprep.cavity.vaults.gussets import gussets
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members, built_for, slope_deg
-from printprep.cavity.vaults.mend import mending, patch_points
+from printprep.cavity.vaults.mend import PHASES, flagged_near, mended
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
-from printprep.overhang.limits import Acceptance
-from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
-from printprep.overhang.suspects import Suspects
+from printprep.overhang.rule import Unsupported, unsupported_ceilings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,14 +28,9 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-DEXEL_MM = 0.35
 # Faces may move so much when the finished cavity is simplified: a fiftieth of the slicer's off.
 SIMPLIFY_MM = 0.003
-# The finished cavity is judged with layers that begin at these shares of a layer.
-PHASES = (0.0, 0.5)
 MOST_MENDINGS = 4
-# Mending is tried on blocks that reach so far around what is flagged, before it is done.
-BLOCK_MM = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +75,10 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     for _ in range(MOST_MENDINGS):
         if not flagged:
             break
-        under, props = _mended(cavity, flagged, rule, members, capitals, forest)
+        under, props, flagged = mended(cavity, flagged, rule, members, capitals, forest)
         cavity = roomy(cavity - united(under + props), members.thickness_mm)
-        flagged = _around(under + props, cavity, rule).patches
+        if props:  # they may reach beyond what was looked at
+            flagged = flagged_near(props, cavity, rule).patches
         wide, narrow = wide + under, narrow + props
     left = Unsupported(flagged)
     return Vaults(
@@ -119,54 +112,6 @@ def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Man
     if pieces:
         room = room - united(pieces)
     return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
-
-
-def _mended(
-    cavity: Manifold,
-    flagged: Sequence[Flagged],
-    rule: Acceptance,
-    members: Members,
-    capitals: Capitals,
-    forest: Forest,
-) -> tuple[list[Frustum], list[Frustum]]:
-    """Capitals and columns, until blocks cut from around all patches are flagged no more.
-
-    Capitals are widened where that will do; what is left gets funnels and columns of its own.
-    """
-    block = cavity ^ _blocks(flagged)
-    dexels: Dexels | None = None
-    wide: list[Frustum] = []
-    narrow: list[Frustum] = []
-    for _ in range(MOST_MENDINGS):
-        points = np.concatenate([patch_points(patch, rule.layer_mm) for patch in flagged])
-        under, points = gussets(points, capitals, forest, members)
-        props: list[Frustum] = []
-        if len(points):
-            dexels = dexels or Dexels.of(cavity, DEXEL_MM)
-            more, props = mending(dexels, points, members, forest.axes())
-            under += more
-        wide, narrow = wide + under, narrow + props
-        block = block - united(under + props)
-        flagged = _around(under + props, block, rule).patches
-        if not flagged:
-            break
-    return wide, narrow
-
-
-def _blocks(flagged: Sequence[Flagged]) -> Manifold:
-    """Cubes around all patches."""
-    from manifold3d import Manifold, OpType
-
-    cube = Manifold.cube((2 * BLOCK_MM,) * 3, center=True)
-    return Manifold.batch_boolean([cube.translate(patch.at_mm) for patch in flagged], OpType.Add)
-
-
-def _around(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:
-    """What the rule flags where pieces were just built: elsewhere nothing changed."""
-    low, high = (np.array(ends) for ends in zip(*(piece.bounds() for piece in pieces), strict=True))
-    beyond = np.array([rule.off_mm, rule.off_mm, rule.layer_mm])
-    suspects = Suspects.of(cavity, rule).near(low - beyond, high + beyond)
-    return unsupported_ceilings(cavity, rule, PHASES, suspects)
 
 
 def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from printprep.types import Bool, Float, Int
 
+DEXEL_MM = 0.35
 # The lattice starts off any round number, where meshes have their edges.
 _JITTER = (0.3819660113, 0.6180339887)
 

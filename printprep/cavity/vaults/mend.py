@@ -1,73 +1,90 @@
-"""Mending: what the acceptance rule still flags is carried by small funnels from the nearest
-material, shell or vault."""
+"""Mending: what the acceptance rule still flags is carried too.
+
+It is tried on blocks cut from around the patches: small, they are quickly built in and judged.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.vaults.capitals import cover
 from printprep.cavity.vaults.ceiling import SPACING_MM
-from printprep.cavity.vaults.columns import FOOT_MM
-from printprep.cavity.vaults.feet import STEP_MM, nearest_feet, set_feet
-from printprep.cavity.vaults.forest import Axes, Forest
-from printprep.cavity.vaults.solids import Frustum, columns, funnels, section
+from printprep.cavity.vaults.dexels import DEXEL_MM, Dexels
+from printprep.cavity.vaults.gussets import gussets
+from printprep.cavity.vaults.props import propped
+from printprep.cavity.vaults.solids import Frustum, united
+from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
+from printprep.overhang.suspects import Suspects
 
 if TYPE_CHECKING:
-    from printprep.cavity.vaults.dexels import Dexels
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from printprep.cavity.vaults.capitals import Capitals
+    from printprep.cavity.vaults.forest import Forest
     from printprep.cavity.vaults.members import Members
-    from printprep.overhang.rule import Flagged
+    from printprep.overhang.limits import Acceptance
     from printprep.types import Float
 
-# Points of an axis, from where a column that leans on it begins to stand out of it.
-GUSSET_STEPS = 3
+# Layers begin at these shares of a layer.
+PHASES = (0.0, 0.5)
+MOST_ROUNDS = 4
+# Blocks reach so far around what is flagged.
+BLOCK_MM = 5.0
 
 
-def mending(
-    dexels: Dexels, points: Float, members: Members, axes: Axes
-) -> tuple[list[Frustum], list[Frustum]]:
-    """Funnels under points (n, 3) of flagged patches, and a column for each.
+def mended(
+    cavity: Manifold,
+    flagged: tuple[Flagged, ...],
+    rule: Acceptance,
+    members: Members,
+    capitals: Capitals,
+    forest: Forest,
+) -> tuple[list[Frustum], list[Frustum], tuple[Flagged, ...]]:
+    """Capitals and columns, until blocks cut from around all patches are flagged no more, and what
+    still is.
 
-    It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick as the
-    column it enters.
+    Capitals are widened where that will do; what is left gets funnels and columns of its own.
     """
-    members = replace(members, lean_deg=members.theta_deg)
-    capitals = cover(points, members, SPACING_MM**2, dexels)
-    nodes = capitals.node_mm
-    deepest = float(nodes[:, 2].max()) - dexels.floor_mm + STEP_MM
-    price, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
-    forest = Forest()
-    props = []
-    for node, foot, cost in zip(nodes, feet, price.tolist(), strict=True):
-        prop = _on_axis(node, cost, axes, members)
-        if prop is None:
-            forest.stand(forest.plant(node), foot)
-        else:
-            props.append(prop)
-    set_feet(forest, dexels, members)
-    return funnels(capitals, members), columns(forest, members) + props
+    block = cavity ^ _blocks(flagged)
+    dexels: Dexels | None = None
+    wide: list[Frustum] = []
+    narrow: list[Frustum] = []
+    for _ in range(MOST_ROUNDS):
+        points = np.concatenate([_points(patch, rule.layer_mm) for patch in flagged])
+        under, points = gussets(points, capitals, forest, members)
+        props: list[Frustum] = []
+        if len(points):
+            dexels = dexels or Dexels.of(cavity, DEXEL_MM)
+            more, props = propped(dexels, points, members, forest.axes())
+            under += more
+        wide, narrow = wide + under, narrow + props
+        block = block - united(under + props)
+        flagged = flagged_near(under + props, block, rule).patches
+        if not flagged:
+            break
+    return wide, narrow, flagged
 
 
-def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frustum | None:
-    """The column to the nearest point of an axis, where that is shorter than ``cost_mm``."""
-    fall = node[2] - axes.place_mm[:, 2]
-    d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
-    reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
-    reach[-GUSSET_STEPS:] = False
-    reach[:-GUSSET_STEPS] &= axes.upper[:-GUSSET_STEPS] == axes.upper[GUSSET_STEPS:]
-    length = np.where(reach, np.hypot(fall, d), np.inf)
-    best = int(np.argmin(length)) if len(length) else -1
-    if best < 0 or length[best] >= cost_mm:
-        return None
-    foot, under = axes.place_mm[best], axes.place_mm[best + GUSSET_STEPS]
-    half = float(members.across_mm(axes.above_mm[best]))
-    own, entered = section(node - foot, half), section(foot - under, half)
-    return Frustum(np.concatenate([under + entered, foot + own, node + own]), 2 * half)
+def _blocks(flagged: Sequence[Flagged]) -> Manifold:
+    """Cubes around all patches."""
+    from manifold3d import Manifold, OpType
+
+    cube = Manifold.cube((2 * BLOCK_MM,) * 3, center=True)
+    return Manifold.batch_boolean([cube.translate(patch.at_mm) for patch in flagged], OpType.Add)
 
 
-def patch_points(patch: Flagged, layer_mm: float) -> Float:
+def flagged_near(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:
+    """What the rule flags where pieces were just built: elsewhere nothing changed."""
+    low, high = (np.array(ends) for ends in zip(*(piece.bounds() for piece in pieces), strict=True))
+    beyond = np.array([rule.off_mm, rule.off_mm, rule.layer_mm])
+    suspects = Suspects.of(cavity, rule).near(low - beyond, high + beyond)
+    return unsupported_ceilings(cavity, rule, PHASES, suspects)
+
+
+def _points(patch: Flagged, layer_mm: float) -> Float:
     """(n, 3) its outline and its middle, thinned, where the void under it was cut."""
     outline = np.concatenate([*patch.outline_mm, [patch.at_mm[:2]]])
     _, first = np.unique(np.floor(outline / (SPACING_MM / 2)), axis=0, return_index=True)
