@@ -34,8 +34,11 @@ def support_inside_g(
     part = as_written(outside - cavity).translate((x / 2, y / 2, 0))
     settings = {
         **profile_settings(profile),
-        "fill_density": "15%",  # quicker than solid; supports do not depend on it
-        "fill_pattern": "grid",
+        # Hollow, without solid layers: quicker, and supports do not depend on it (a cow's cavity at
+        # a first layer of 0.25 mm takes 0.4580 g of them with either)
+        "fill_density": "0%",
+        "top_solid_layers": "0",
+        "bottom_solid_layers": "0",
         "overhangs": "0",  # twice as quick; bridges then get support too, so nothing is missed
         "support_material": "1",
         "support_material_auto": "1",

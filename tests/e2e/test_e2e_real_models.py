@@ -14,22 +14,21 @@ from dev_table import measure
 
 WALL_MM, LEAN_DEG = 1.2, 10.0
 
-MODELS = (
+# As by default, with vaults inside
+VAULTED = (
     "cow",
-    "goathead",
     "spot_low_resolution",
     "penguin",
-    "demosthenes-low-res",
     "rabbit",
     "wingnut",
-    "torus",
     "teapot",
-    "chair",
     "candle_melted",
-    "angle_block",
+    "fuze",
+    "human_man",
+    "bottle_A_brown",
 )
-# With vaults inside, as by default; the rest bare, which is quick
-VAULTED = ("cow", "candle_melted")
+# Without them, which is quick
+BARE = ("goathead", "demosthenes-low-res", "torus", "chair", "angle_block")
 # Bare, a flat ceiling of 80 mm is bridged by threads as thick as the nozzle, not as the layer: they
 # weigh more than is computed, high up, and `verify` says so
 MASS_OFF_PERCENT = {"angle_block": 7.0}
@@ -38,7 +37,7 @@ CENTRE_OFF_MM = {"angle_block": 2.0}
 
 @pytest.mark.slicer
 @pytest.mark.corpus
-@pytest.mark.parametrize("stem", MODELS)
+@pytest.mark.parametrize("stem", VAULTED + BARE)
 def test_a_real_model_is_hollowed_and_prints(
     stem: str, dev_models: dict[str, CatalogueModel], prusa_slicer: Path
 ) -> None:
@@ -66,18 +65,5 @@ def test_a_real_model_is_hollowed_and_prints(
     assert row["tilt_printed_deg"] >= min(LEAN_DEG, row["tilt_deg"]) - 1.0
     assert row["in_cavities_mm3"] == 0.0
     assert abs(row["filament_off_percent"]) <= 0.5
-
-
-@pytest.mark.slicer
-@pytest.mark.corpus
-@pytest.mark.parametrize("stem", ["cow", "fuze"])
-def test_a_real_model_carries_its_own_ceilings(
-    stem: str, dev_models: dict[str, CatalogueModel], prusa_slicer: Path
-) -> None:
-    model = dev_models[stem]
-    row = measure(model.path, model.up, 60.0, "fdm-pla-0.4", slice_it=False)
-    assert row["exit"] == 0, row
-    assert (row["lib3mf"], row["manifold"]) == ("clean", "yes")
-    assert row["judged_wall_mm"] >= WALL_MM - 0.05
-    assert row["unsupported_mm2"] == 0 and row["islands"] == 0
-    assert row["tilt_deg"] >= LEAN_DEG
+    if stem in VAULTED:
+        assert row["unsupported_mm2"] == 0 and row["islands"] == 0
