@@ -121,10 +121,11 @@ def measure(
 
 
 def _around(void: Manifold) -> Manifold:
-    """A block with material to spare on every side of a void; its own sides hang over nothing."""
+    """A block from the bed on, with material to spare around a void."""
     low, high = np.reshape(void.bounding_box(), (2, 3))
-    block = Manifold.cube((high - low + 2 * AROUND_MM).tolist())
-    return block.translate((low - AROUND_MM).tolist())
+    low, high = low - AROUND_MM, high + AROUND_MM
+    low[2] = 0.0
+    return Manifold.cube((high - low).tolist()).translate(low.tolist())
 
 
 def markdown(rows: list[dict[str, Any]]) -> str:

@@ -21,8 +21,10 @@ deeper within off of it, δ + h s > off for both; so only where
     h (s_A + s_B) > 2 off − c min(2, (1 − u_A·u_B) 4/3),
 
 one of them with s > t.  Two such walls close above p, within c / t, in an edge or a corner where
-both meet: a *groove*.  (A slot narrower than 2c that goes on upward between them has none: a strip
-narrower than c would be missed there.)
+both meet: a *groove*.
+
+That leaves out a throat, where the rim of one wall comes within 2c of the other and the gap widens
+again above: no edge joins them.  What is missed there is a strip narrower than c.
 """
 
 from __future__ import annotations
