@@ -34,9 +34,9 @@ SHORT_MM = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Frustum:
-    """The hull of two level sections.
+    """The hull of level sections.
 
-    corners : (n, 3) of both;  across_mm : least thickness across its axis.
+    corners : (n, 3) of all;  across_mm : least thickness across its axis.
     """
 
     corners: Float
