@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.types import Float
 
 # Points of an axis, from where a column that leans on it begins to stand out of it.
-GUSSET_STEPS = 3
+LEAVE_STEPS = 3
 
 
 def propped(
@@ -53,13 +53,13 @@ def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frust
     fall = node[2] - axes.place_mm[:, 2]
     d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
     reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)
-    reach[-GUSSET_STEPS:] = False
-    reach[:-GUSSET_STEPS] &= axes.upper[:-GUSSET_STEPS] == axes.upper[GUSSET_STEPS:]
+    reach[-LEAVE_STEPS:] = False
+    reach[:-LEAVE_STEPS] &= axes.upper[:-LEAVE_STEPS] == axes.upper[LEAVE_STEPS:]
     length = np.where(reach, np.hypot(fall, d), np.inf)
     best = int(np.argmin(length)) if len(length) else -1
     if best < 0 or length[best] >= cost_mm:
         return None
-    foot, under = axes.place_mm[best], axes.place_mm[best + GUSSET_STEPS]
+    foot, under = axes.place_mm[best], axes.place_mm[best + LEAVE_STEPS]
     half = float(members.across_mm(axes.above_mm[best]))
     own, entered = section(node - foot, half), section(foot - under, half)
     return Frustum(np.concatenate([under + entered, foot + own, node + own]), 2 * half)
