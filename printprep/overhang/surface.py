@@ -18,7 +18,11 @@ _EXACT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A closed mesh; normals (m, 3) of unit length; steepest : largest tangent of a way down."""
+    """A closed mesh.
+
+    vertices : (n, 3), x, y, z in mm;  faces : (m, 3), counter-clockwise seen from outside the void;
+    normals : (m, 3), of unit length;  steepest : largest tangent of a way down.
+    """
 
     vertices: Float
     faces: Int
