@@ -51,9 +51,7 @@ def test_a_cylinder_comes_out_hollow_checked_and_the_same_twice(workshop: Path):
     assert data["wall_min_mm"] >= 1.15
     assert data["cavities"]["count"] == 1
     assert data["tilt_deg"] >= data["lean_deg"] == 10
-    # Gussets under capitals taper to less than a wall: told, no more.
-    told = [(item["rule"], item["severity"]) for item in data["findings"]]
-    assert told == [("sealed-cavity", "info"), ("wall-thickness", "info")]
+    assert [item["rule"] for item in data["findings"]] == ["sealed-cavity"]
 
     assert program("hollow", "cylinder.stl", "-o", "b.3mf", folder=workshop).returncode == 0
     assert (workshop / "a.3mf").read_bytes() == (workshop / "b.3mf").read_bytes()

@@ -15,7 +15,7 @@ from printprep.cavity.vaults.feet import set_feet
 from printprep.cavity.vaults.forest import Forest
 from printprep.cavity.vaults.landings import Landings
 from printprep.cavity.vaults.members import Members, built_for, slope_deg
-from printprep.cavity.vaults.mend import PHASES, flagged_near, mended
+from printprep.cavity.vaults.mend import PHASES, mended
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
 from printprep.overhang.rule import Unsupported, unsupported_ceilings
@@ -28,23 +28,23 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Faces may move so much when the finished cavity is simplified: a fiftieth of the slicer's off.
+# Faces may move so much when the cavity is simplified, a fiftieth of the slicer's off; and once more
+# so much when it is mended.  What that leaves out are slivers, and slivers fold over.
 SIMPLIFY_MM = 0.003
-MOST_MENDINGS = 4
+FINISH_MM = 0.0005
 
 
 @dataclass(frozen=True, eq=False)
 class Vaults:
     """What it takes to print a room without support.
 
-    cavity : the room without the vaults;  solids : the vaults, room minus cavity.
-    samples, capitals, columns : how many;  added_mm3 : volume of the solids.
-    thinnest_mm : least thickness of a column or of a capital's neck, across its axis.
+    cavity : the room without the vaults.
+    samples, capitals, columns : how many;  added_mm3 : volume of the vaults.
+    thinnest_mm : least thickness of any of them, across its axis.
     unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases.
     """
 
     cavity: Manifold
-    solids: Manifold
     samples: int
     capitals: int
     columns: int
@@ -64,26 +64,19 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
 
     Raises UsageError for a profile without a nozzle.
     """
-    from manifold3d import Manifold
-
     members, rule = Members.of(profile), built_for(profile)
     samples = ceiling_samples(room, slope_deg(profile))
     capitals, forest = _raised(samples, room, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
-    cavity = _without(room, wide + narrow, members)
+    cavity = _without(room, wide + narrow, members, SIMPLIFY_MM)
     flagged = unsupported_ceilings(cavity, rule, PHASES).patches
-    for _ in range(MOST_MENDINGS):
-        if not flagged:
-            break
-        under, props, flagged = mended(cavity, flagged, rule, members, capitals, forest)
-        cavity = roomy(cavity - united(under + props), members.thickness_mm)
-        if props:  # they may reach beyond what was looked at
-            flagged = flagged_near(props, cavity, rule).patches
+    under, props, flagged = mended(cavity, flagged, rule, members, capitals, forest)
+    if under:
+        cavity = _without(cavity, under + props, members, FINISH_MM)
         wide, narrow = wide + under, narrow + props
     left = Unsupported(flagged)
     return Vaults(
         cavity=cavity,
-        solids=room - cavity if wide else Manifold(),
         samples=len(samples),
         capitals=len(wide),
         columns=len(narrow),
@@ -107,11 +100,14 @@ def _raised(samples: Float, room: Manifold, members: Members) -> tuple[Capitals,
     return capitals, forest
 
 
-def _without(room: Manifold, pieces: Sequence[Frustum], members: Members) -> Manifold:
-    """The room less what is built in it and what is then too small to keep."""
+def _without(
+    room: Manifold, pieces: Sequence[Frustum], members: Members, simplify_mm: float
+) -> Manifold:
+    """The room less what is built in it and what is then too small to keep, simplified."""
     if pieces:
-        room = room - united(pieces)
-    return roomy(room.simplify(SIMPLIFY_MM), members.thickness_mm)
+        # As one surface of its own: the kernel leaves edges between those of several.
+        room = (room - united(pieces)).as_original()
+    return roomy(room.simplify(simplify_mm), members.thickness_mm)
 
 
 def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:

@@ -27,9 +27,9 @@ MOST_OUT_MM = 0.4
 # It begins at most so far below the capital's node, looked for in steps.
 MOST_DROP_MM = 2.0
 STEP_MM = 0.1
-# So much around each point of a patch is filled.
-RING_MM = 0.1
-_SIDES = 6
+# So far beyond each point of a patch it reaches.
+MARGIN_MM = 0.1
+_STEPS = 6
 
 
 def gussets(
@@ -60,13 +60,22 @@ def _gusset(points: Float, node: int, forest: Forest, members: Members) -> Frust
         half = float(members.across_mm(np.array(above_mm)))
         away = points - place
         d = np.hypot(away[:, 0], away[:, 1])
-        if (d + RING_MM <= half + away[:, 2] * members.tan).all():
-            turn = 2 * np.pi * np.arange(_SIDES) / _SIDES
-            ring = RING_MM * np.stack([np.cos(turn), np.sin(turn), np.zeros(_SIDES)], axis=1)
-            low = (points[:, None] + ring).reshape(-1, 3)
-            high = low + np.array([0.0, 0.0, BEYOND_MM])
-            return Frustum(np.concatenate([place + section(way, half), low, high]), 2 * half)
+        if (d + MARGIN_MM <= half + away[:, 2] * members.tan).all():
+            ribs = [_rib(vector, half) for vector in away]
+            return Frustum(place + np.concatenate([section(way, half), *ribs]), 2 * half)
     return None
+
+
+def _rib(away: Float, half_mm: float) -> Float:
+    """(n, 3) the upper end of a round rib from the origin that just covers a point at ``away``."""
+    d, rise = float(np.hypot(away[0], away[1])), float(away[2])
+    out = 0.0
+    for _ in range(_STEPS):
+        out = max(d + MARGIN_MM - half_mm * float(np.hypot(1.0, out / rise)), 0.0)
+    along = away[:2] / d if d > 0 else np.zeros(2)
+    way = np.array([*(out * along), rise])
+    end = way + section(way, half_mm)
+    return np.concatenate([end, end + np.array([0.0, 0.0, BEYOND_MM])])
 
 
 def _below(index: int, forest: Forest) -> Sequence[tuple[Float, Float, float]]:

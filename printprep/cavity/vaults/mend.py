@@ -1,6 +1,6 @@
 """Mending: what the acceptance rule still flags is carried too.
 
-It is tried on blocks cut from around the patches: small, they are quickly built in and judged.
+It is tried on blocks cut from around what is built: small, they are quickly judged.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from printprep.cavity.vaults.dexels import DEXEL_MM, Dexels
 from printprep.cavity.vaults.gussets import gussets
 from printprep.cavity.vaults.props import propped
 from printprep.cavity.vaults.solids import Frustum, united
-from printprep.overhang.rule import Flagged, Unsupported, unsupported_ceilings
+from printprep.overhang.rule import Flagged, unsupported_ceilings
 from printprep.overhang.suspects import Suspects
 
 if TYPE_CHECKING:
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 # Layers begin at these shares of a layer.
 PHASES = (0.0, 0.5)
-MOST_ROUNDS = 4
-# Blocks reach so far around what is flagged.
-BLOCK_MM = 5.0
+MOST_ROUNDS = 8
+# Blocks reach so far beyond what is built: farther than the rule looks.
+BLOCK_MM = 2.0
 
 
 def mended(
@@ -43,16 +43,16 @@ def mended(
     capitals: Capitals,
     forest: Forest,
 ) -> tuple[list[Frustum], list[Frustum], tuple[Flagged, ...]]:
-    """Capitals and columns, until blocks cut from around all patches are flagged no more, and what
-    still is.
+    """Capitals and columns, until nothing is flagged around any of them, and what still is.
 
     Capitals are widened where that will do; what is left gets funnels and columns of its own.
     """
-    block = cavity ^ _blocks(flagged)
     dexels: Dexels | None = None
     wide: list[Frustum] = []
     narrow: list[Frustum] = []
     for _ in range(MOST_ROUNDS):
+        if not flagged:
+            break
         points = np.concatenate([_points(patch, rule.layer_mm) for patch in flagged])
         under, points = gussets(points, capitals, forest, members)
         props: list[Frustum] = []
@@ -61,27 +61,30 @@ def mended(
             more, props = propped(dexels, points, members, forest.axes())
             under += more
         wide, narrow = wide + under, narrow + props
-        block = block - united(under + props)
-        flagged = flagged_near(under + props, block, rule).patches
-        if not flagged:
-            break
+        block = (cavity ^ _around(wide + narrow)) - united(wide + narrow)
+        flagged = _flagged_near(under + props, block, rule)
     return wide, narrow, flagged
 
 
-def _blocks(flagged: Sequence[Flagged]) -> Manifold:
-    """Cubes around all patches."""
+def _around(pieces: Sequence[Frustum]) -> Manifold:
+    """The boxes of pieces, and a little more."""
     from manifold3d import Manifold, OpType
 
-    cube = Manifold.cube((2 * BLOCK_MM,) * 3, center=True)
-    return Manifold.batch_boolean([cube.translate(patch.at_mm) for patch in flagged], OpType.Add)
+    boxes = []
+    for low, high in (piece.bounds() for piece in pieces):
+        box = Manifold.cube((high - low + 2 * BLOCK_MM).tolist())
+        boxes.append(box.translate((low - BLOCK_MM).tolist()))
+    return Manifold.batch_boolean(boxes, OpType.Add)
 
 
-def flagged_near(pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance) -> Unsupported:
+def _flagged_near(
+    pieces: Sequence[Frustum], cavity: Manifold, rule: Acceptance
+) -> tuple[Flagged, ...]:
     """What the rule flags where pieces were just built: elsewhere nothing changed."""
     low, high = (np.array(ends) for ends in zip(*(piece.bounds() for piece in pieces), strict=True))
     beyond = np.array([rule.off_mm, rule.off_mm, rule.layer_mm])
     suspects = Suspects.of(cavity, rule).near(low - beyond, high + beyond)
-    return unsupported_ceilings(cavity, rule, PHASES, suspects)
+    return unsupported_ceilings(cavity, rule, PHASES, suspects).patches
 
 
 def _points(patch: Flagged, layer_mm: float) -> Float:
