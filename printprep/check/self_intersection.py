@@ -26,7 +26,7 @@ def self_intersection(subject: Subject, profile: Profile) -> Iterator[Finding]:
         "self-intersection",
         "warning",
         f"The surface passes through itself at {len(at)} edges: programs differ on what is inside.",
-        "Unite it with itself where it was made; `printprep hollow` keeps it where it changes little.",
+        "Unite it with itself in a modelling program: hollowing keeps what changes little.",
         value=float(len(at)),
         limit=0.0,
         unit="edges",

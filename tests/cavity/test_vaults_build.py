@@ -15,7 +15,8 @@ from support_inside import support_inside_g
 
 from printprep.cavity.vaults import Vaults, vaulted
 from printprep.errors import UsageError
-from printprep.mesh.measure import shells
+from printprep.mesh.measure import arrays, shells
+from printprep.mesh.pierced import pierced
 from printprep.mesh.written import as_written
 from printprep.overhang.limits import acceptance
 from printprep.overhang.rule import unsupported_ceilings
@@ -110,3 +111,18 @@ def test_spot_prints_without_support_inside(dev_models):
     assert plain > 0.5
     for threshold in (0, 45):
         assert support_inside_g(solid, vaults.cavity, PROFILE, threshold) < 0.1
+
+
+@pytest.mark.corpus
+def test_a_hundred_capitals_leave_no_slivers_that_fold_over(dev_models):
+    """Left as the kernel makes them, one went 0.14 mm through the surface beside it."""
+    spot = dev_models["spot_low_resolution"]
+    solid, room = room_of(spot.path, spot.up, 100.0, PROFILE)
+    part = as_written(solid - vaulted(room, PROFILE).cavity)
+    vertices, faces = arrays(part)
+    assert len(pierced(vertices, faces).face) == 0
+    corners = vertices[faces]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    away = corners[:, 1:] - corners[:, :1]
+    doubled = np.linalg.norm(np.cross(away[:, 0], away[:, 1]), axis=1)
+    assert (doubled / sides.max(axis=1) < 1e-5).mean() < 0.001

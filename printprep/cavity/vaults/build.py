@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Faces may move so much when the cavity is simplified, a fiftieth of the slicer's off; and once more
-# so much when it is mended.  What that leaves out are slivers, and slivers fold over.
+# Faces may move so much when the cavity is simplified, a fiftieth of the slicer's off, and so much
+# more once it is mended.  What that leaves out are slivers, and slivers fold over.
 SIMPLIFY_MM = 0.003
 FINISH_MM = 0.0005
 
