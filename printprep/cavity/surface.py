@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.measure import arrays
+from printprep.mesh.pierced import folded
 from printprep.voxel.distance import DepthField, Surface
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ SIMPLIFY_MM = 0.02
 ACCEPTED_MM = 0.03
 CORRECTED_MM = 0.02
 MOST_CORRECTIONS = 8
+MOST_HALVINGS = 4
 
 
 def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) -> Manifold:
@@ -55,9 +58,7 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
     depth = field.depth_mm.copy()
     for round_ in range(MOST_CORRECTIONS):
         # Merging flat triangles spends part of the tolerance: less of it each time it was too much.
-        cavity = isosurface(DepthField(field.grid, depth), wall_mm).simplify(
-            SIMPLIFY_MM / 2**round_
-        )
+        cavity = _simplified(isosurface(DepthField(field.grid, depth), wall_mm), 2.0**-round_)
         if cavity.is_empty():
             return cavity
         places, missing = _too_thin(outside, Surface.of(cavity), wall_mm)
@@ -65,6 +66,15 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
             return cavity
         _lower(DepthField(field.grid, depth), places, missing)
     raise ArithmeticError(f"walls of {wall_mm} mm were not reached in {MOST_CORRECTIONS} rounds")
+
+
+def _simplified(cavity: Manifold, share: float) -> Manifold:
+    """By that share of what is allowed, or by less where it would fold over."""
+    for halving in range(MOST_HALVINGS):
+        simpler = cavity.simplify(SIMPLIFY_MM * share / 2**halving)
+        if simpler.is_empty() or not folded(*arrays(simpler)):
+            return simpler
+    return cavity
 
 
 def isosurface(field: DepthField, level_mm: float) -> Manifold:

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 _TOUCH = 1e-5
 # Nor does what an end lies this close beyond: slivers of a kernel's own tolerance reach so far.
 _SHALLOW = 5e-5
+# Faces that turn back more sharply than by this cosine may have been folded over; what they went
+# through lies within so many rings of triangles.
+_FOLDED = -0.85
+_RINGS = 2
 # An edge that first meets a triangle at its own corner is followed on, so many times.
 _ROUNDS = 3
 
@@ -70,6 +74,30 @@ def pierced(vertices: Float, faces: Int) -> Pierced:
         at_mm=at,
         apart=piece[edges[found, 0]] != piece[faces[hit[found], 0]],
     )
+
+
+def folded(vertices: Float, faces: Int) -> bool:
+    """Whether a closed surface passes through itself beside an edge folded over.
+
+    Simplifying a surface can do that.  Only the triangles around such edges are looked at: a small
+    part of the time of :func:`pierced`.
+    """
+    edges = np.sort(directed_edges(faces), axis=1)
+    order = np.argsort(edges[:, 0] * len(vertices) + edges[:, 1], kind="stable")
+    one, other = order[0::2] // 3, order[1::2] // 3
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1)
+    back = np.einsum("ij,ij->i", normal[one], normal[other]) < _FOLDED * length[one] * length[other]
+    if not back.any():
+        return False
+    near: Bool = np.zeros(len(faces), dtype=bool)
+    near[one[back]] = near[other[back]] = True
+    for _ in range(_RINGS):
+        touched = np.zeros(len(vertices), dtype=bool)
+        touched[faces[near]] = True
+        near = touched[faces].any(axis=1)
+    return len(pierced(vertices, faces[near]).face) > 0
 
 
 def _beyond(vertices: Float, edges: Int, faces: Int) -> Float:
