@@ -96,7 +96,7 @@ def folded(vertices: Float, faces: Int) -> bool:
     for _ in range(_RINGS):
         touched = np.zeros(len(vertices), dtype=bool)
         touched[faces[near]] = True
-        near = touched[faces].any(axis=1)
+        near[:] = touched[faces].any(axis=1)
     return len(pierced(vertices, faces[near]).face) > 0
 
 
