@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 # Faces may move so much when the cavity is simplified, a fiftieth of the slicer's off, and so much
 # more once it is mended.  What that leaves out are slivers, and slivers fold over.
 SIMPLIFY_MM = 0.003
-FINISH_MM = 0.0005
+FINISH_MM = 0.001
 
 
 @dataclass(frozen=True, eq=False)
