@@ -18,6 +18,7 @@ from printprep.cavity.vaults.members import Members, built_for, slope_deg
 from printprep.cavity.vaults.mend import PHASES, mended
 from printprep.cavity.vaults.solids import Frustum, columns, funnels, united
 from printprep.mesh.measure import bodies, together
+from printprep.mesh.short import contracted
 from printprep.overhang.rule import Unsupported, unsupported_ceilings
 
 if TYPE_CHECKING:
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Float
 
-# Faces may move so much when the cavity is simplified, a fiftieth of the slicer's off, and so much
-# more once it is mended.  What that leaves out are slivers, and slivers fold over.
+# Faces may move so much when the cavity is simplified: a fiftieth of the slicer's off.
 SIMPLIFY_MM = 0.003
-FINISH_MM = 0.001
+# Edges shorter than this are contracted once it is finished.
+SHORT_MM = 0.002
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +69,14 @@ def vaulted(room: Manifold, profile: Profile) -> Vaults:
     samples = ceiling_samples(room, slope_deg(profile))
     capitals, forest = _raised(samples, room, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
-    cavity = _without(room, wide + narrow, members, SIMPLIFY_MM)
+    cavity = _without(room, wide + narrow).simplify(SIMPLIFY_MM)
+    cavity = roomy(cavity, members.thickness_mm)
     flagged = unsupported_ceilings(cavity, rule, PHASES).patches
     under, props, flagged = mended(cavity, flagged, rule, members, capitals, forest)
-    if under:
-        cavity = _without(cavity, under + props, members, FINISH_MM)
-        wide, narrow = wide + under, narrow + props
+    wide, narrow = wide + under, narrow + props
+    if wide:
+        cavity = contracted(_without(cavity, under + props), SHORT_MM)
+        cavity = roomy(cavity, members.thickness_mm)
     left = Unsupported(flagged)
     return Vaults(
         cavity=cavity,
@@ -100,14 +103,12 @@ def _raised(samples: Float, room: Manifold, members: Members) -> tuple[Capitals,
     return capitals, forest
 
 
-def _without(
-    room: Manifold, pieces: Sequence[Frustum], members: Members, simplify_mm: float
-) -> Manifold:
-    """The room less what is built in it and what is then too small to keep, simplified."""
-    if pieces:
-        # As one surface of its own: the kernel leaves edges between those of several.
-        room = (room - united(pieces)).as_original()
-    return roomy(room.simplify(simplify_mm), members.thickness_mm)
+def _without(room: Manifold, pieces: Sequence[Frustum]) -> Manifold:
+    """The room less what is built in it."""
+    if not pieces:
+        return room
+    # As one surface of its own: the kernel leaves edges between those of several.
+    return (room - united(pieces)).as_original()
 
 
 def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:

@@ -2,8 +2,8 @@
 
 What the rule flags beside a capital lies a few hundredths of a millimetre out of its reach: a
 groove between its flank and a slope, which closes too early.  A funnel that began a little lower on
-the capital's column would carry it; of that funnel only ribs are built, as thick as the column, from
-there to each point of the patch, and their hull.
+the capital's column would carry it; of that funnel only ribs are built, as thick as the column,
+from there to each point of the patch, and their hull.
 """
 
 from __future__ import annotations
