@@ -12,22 +12,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays, from_arrays
+from printprep.mesh.weld import directed_edges
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 
 def contracted(manifold: Manifold, length_mm: float) -> Manifold:
-    """The manifold without edges shorter than a length, and without what that leaves flat.
+    """The manifold with its edges shorter than a length contracted, and what is then flat left out.
 
-    Corners that such edges join, directly or by way of others, move to one of them; where that
-    leaves less than half the length to tell, the surface is simplified.
+    Corners that such edges join, directly or by way of others, move to one of them: mostly by less
+    than twice the length.  Then the surface is simplified, by half of it.
+
+    Raises GeometryError where that leaves no solid.
     """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     vertices, faces = arrays(manifold)
-    start, end = faces.ravel(), faces[:, [1, 2, 0]].ravel()
+    start, end = directed_edges(faces).T
     once = start < end  # the surface is closed: each edge is there both ways
     start, end = start[once], end[once]
     short = ((vertices[start] - vertices[end]) ** 2).sum(axis=1) < length_mm**2

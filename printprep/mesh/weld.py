@@ -94,6 +94,15 @@ def directed_edges(faces: Int) -> Int:
     return np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
 
 
+def opposite_edges(faces: Int) -> tuple[Int, Int]:
+    """For every edge of a closed surface, (k,) and (k,) the rows of :func:`directed_edges` that run
+    along it: once in each direction."""
+    edges = np.sort(directed_edges(faces), axis=1)
+    size = int(faces.max(initial=0)) + 1
+    order = np.argsort(edges[:, 0] * size + edges[:, 1], kind="stable")
+    return order[0::2], order[1::2]
+
+
 def edge_counts(faces: Int) -> EdgeCounts:
     """How far the faces are from a closed, consistently oriented surface."""
     if len(faces) == 0:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.weld import directed_edges
+from printprep.mesh.weld import directed_edges, opposite_edges
 
 if TYPE_CHECKING:
     from printprep.types import Bool, Float, Int
@@ -54,17 +54,14 @@ class Surface:
     def keels(self) -> tuple[Int, Float, Float]:
         """Hanging edges between ways down neither of which falls into the other: (k, 2) their ends,
         (k,) tangents of their own overhang, (k, 3) sums of the normals beside them."""
-        edges = directed_edges(self.faces)
-        face = np.arange(len(edges)) // 3
+        ends = np.sort(directed_edges(self.faces), axis=1)
         opposite = self.faces[:, [2, 0, 1]].ravel()
-        ends = np.sort(edges, axis=1)
-        order = np.argsort(ends[:, 0] * len(self.vertices) + ends[:, 1], kind="stable")
-        one, other = order[0::2], order[1::2]
-        mine, theirs = self.normals[face[one]], self.normals[face[other]]
+        one, other = opposite_edges(self.faces)
+        mine, theirs = self.normals[one // 3], self.normals[other // 3]
         away = self.vertices[opposite[other]] - self.vertices[ends[one, 0]]
         hanging = np.einsum("ij,ij->i", mine, away) > 0  # the void bends around material
         hanging &= (mine[:, 2] > 0) | (theirs[:, 2] > 0)
-        hanging &= ~self.shallow[face[one]] & ~self.shallow[face[other]]
+        hanging &= ~self.shallow[one // 3] & ~self.shallow[other // 3]
         one, mine, theirs = one[hanging], mine[hanging], theirs[hanging]
         kept = ~(_falls_into(mine, theirs) | _falls_into(theirs, mine))
         found = ends[one[kept]]

@@ -42,7 +42,8 @@ class Vaults:
     cavity : the room without the vaults.
     samples, capitals, columns : how many;  added_mm3 : volume of the vaults.
     thinnest_mm : least thickness of any of them, across its axis.
-    unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases.
+    unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases, before
+        short edges are contracted, which moves corners by less than the reserve.
     """
 
     cavity: Manifold

@@ -67,7 +67,10 @@ def _gusset(points: Float, node: int, forest: Forest, members: Members) -> Frust
 
 
 def _rib(away: Float, half_mm: float) -> Float:
-    """(n, 3) the upper end of a round rib from the origin that just covers a point at ``away``."""
+    """(n, 3) mm, the upper end of a round rib from the origin that just covers a point.
+
+    away : (3,) mm, that point.
+    """
     d, rise = float(np.hypot(away[0], away[1])), float(away[2])
     out = 0.0
     for _ in range(_STEPS):
