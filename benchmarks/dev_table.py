@@ -29,8 +29,8 @@ from rows import catalogue, markdown_lines
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
 from printprep.slicer.process import find_slicer
-from printprep.slicer.verify import settings_for, slice_and_measure
-from printprep.slicer.verify_part import carried_part
+from printprep.verify.part_3mf import computed_part
+from printprep.verify.run import settings_for, slice_and_measure
 
 COLUMNS = (
     ("model", "model", "{}"),
@@ -132,7 +132,7 @@ def judged(model: Path, up: str, size_mm: float, part: Path, slice_it: bool) -> 
         "sliced": "–",
     }
     if slice_it:
-        carried = carried_part(part)
+        carried = computed_part(part)
         settings = settings_for(carried, None)
         printed, _ = slice_and_measure(slicer, carried, settings, None, part.parent)
         row |= {"sliced": "yes", **verify_table.figures(carried, printed)}

@@ -26,8 +26,8 @@ from rows import catalogue, markdown_lines
 from sl1_layers import judged_with_and_without
 
 from printprep.errors import PrintprepError
-from printprep.mesh.written import as_written, written_arrays
-from printprep.pipeline import hollow
+from printprep.mesh.quantize import quantized, quantized_arrays
+from printprep.pipeline.hollow import hollow
 from printprep.stand.lean import tilt_toward
 
 COLUMNS = (
@@ -105,7 +105,7 @@ def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]
     }
     if not part.cavities:
         return row
-    undrained = as_written(Manifold.batch_boolean([part.outside, *part.cavities], OpType.Subtract))
+    undrained = quantized(Manifold.batch_boolean([part.outside, *part.cavities], OpType.Subtract))
     with_holes, without = judged_with_and_without(part.manifold, undrained)
     return row | {
         "sealed_cm3": without.trapped_mm3 / 1000,
@@ -118,7 +118,7 @@ def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]
 
 def watertight(part: Manifold) -> bool:
     """By trimesh, from the coordinates that are written."""
-    vertices, faces = written_arrays(part)
+    vertices, faces = quantized_arrays(part)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     return bool(mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0)
 

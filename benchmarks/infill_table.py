@@ -25,15 +25,15 @@ from printprep import hollow
 from printprep.cavity.carve import make_part
 from printprep.errors import ToolError
 from printprep.gcode.measure import measure_gcode
-from printprep.infill.press import Press, Weighed
+from printprep.infill.test_print import TrialSlicer, Weighed
 from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
-from printprep.slicer.export import profile_settings
 from printprep.slicer.process import Slicer, find_slicer
-from printprep.slicer.verify import verify
-from printprep.slicer.verify_rules import tilt_as_printed
+from printprep.slicer.prusa_ini import profile_settings
 from printprep.stand.stability import least
 from printprep.types import Solid
+from printprep.verify.rules import tilt_as_printed
+from printprep.verify.run import verify
 
 COLUMNS = (
     ("model", "model", "{}"),
@@ -119,7 +119,7 @@ def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> di
     for pattern in ("lightning", "gyroid"):
         weighed = uniform(made.solid, slicer, profile, pattern)
         row[f"{pattern}_g"] = None if weighed is None else grams(weighed, profile)
-        row[f"{pattern}_deg"] = None if weighed is None else least(weighed.standings).tilt_deg
+        row[f"{pattern}_deg"] = None if weighed is None else least(weighed.stabilities).tilt_deg
     row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
     return row
 
@@ -149,9 +149,9 @@ def uniform(solid: Solid, slicer: Slicer, profile: Profile, pattern: str) -> Wei
     """
     assert profile.infill is not None
     infill = profile.infill.model_copy(update={"pattern": pattern, "density": 0.15})
-    press = Press(slicer, profile.model_copy(update={"infill": infill}))
+    trial_slicer = TrialSlicer(slicer, profile.model_copy(update={"infill": infill}))
     try:
-        return press.weigh(make_part(solid, None, ()), (), bodies(solid.manifold))
+        return trial_slicer.weigh(make_part(solid, None, ()), (), bodies(solid.manifold))
     except ToolError:
         return None
 

@@ -26,10 +26,10 @@ sys.path.insert(0, str(ROOT / "tests" / "density"))
 from paper_models import voxelize  # noqa: E402
 from paper_reference import run_autograd  # noqa: E402
 
-from printprep.density.adam import solve_adam  # noqa: E402
-from printprep.density.paper_domain import build_domain  # noqa: E402
-from printprep.density.paper_settings import PaperSettings  # noqa: E402
-from printprep.density.plane import solve_plane  # noqa: E402
+from printprep.paper.adam import solve_adam  # noqa: E402
+from printprep.paper.domain import build_domain  # noqa: E402
+from printprep.paper.plane import solve_plane  # noqa: E402
+from printprep.paper.settings import PaperSettings  # noqa: E402
 
 HEAD = (
     "| model | n | Adam | plane | below | same, grid | same, free | steps | Adam s | plane s "

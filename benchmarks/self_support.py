@@ -27,13 +27,13 @@ from dev_rooms import room_of
 from rows import catalogue, markdown_lines
 from support_inside import support_inside_g
 
-from printprep.cavity.vaults import vaulted
 from printprep.errors import PrintprepError
 from printprep.mesh.measure import shells
-from printprep.mesh.written import as_written
+from printprep.mesh.quantize import quantized
 from printprep.overhang.limits import acceptance
 from printprep.overhang.rule import unsupported_overhangs
 from printprep.profiles import Profile, load_profile
+from printprep.supports import vaulted
 
 COLUMNS = (
     ("model", "model", "{}"),
@@ -87,25 +87,25 @@ def measure(
     path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool
 ) -> dict[str, Any]:
     """One row of the table."""
-    solid, room = room_of(path, up, size_mm, profile)
-    if room.is_empty():
+    solid, hollowable_volume = room_of(path, up, size_mm, profile)
+    if hollowable_volume.is_empty():
         return {"model": path.stem, "room_cm3": 0.0}
     wall, cpu = time.perf_counter(), time.process_time()
-    vaults = vaulted(room, profile)
+    vaults = vaulted(hollowable_volume, profile)
     row: dict[str, Any] = {
         "model": path.stem,
         "seconds": time.perf_counter() - wall,
         "cpu_seconds": time.process_time() - cpu,
-        "room_cm3": room.volume() / 1000,
+        "room_cm3": hollowable_volume.volume() / 1000,
         "capitals": vaults.capitals,
         "columns": vaults.columns,
-        "share": vaults.added_mm3 / room.volume(),
+        "share": vaults.added_mm3 / hollowable_volume.volume(),
         "added_g": vaults.added_mm3 * profile.material.density_g_cm3 / 1000,
         "thinnest_mm": vaults.thinnest_mm,
     }
     if vaults.cavity.is_empty():
         return row
-    written = as_written(solid - vaults.cavity)
+    written = quantized(solid - vaults.cavity)
     rule = acceptance(profile)
     blocks = [_around(void) - void for void in shells(written)[1]]
     found = [

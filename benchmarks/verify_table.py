@@ -22,14 +22,14 @@ from rows import catalogue, markdown_lines
 
 from printprep import hollow
 from printprep.gcode.printed import Printed
-from printprep.slicer.verify import verify
-from printprep.slicer.verify_part import CarriedPart
-from printprep.slicer.verify_rules import (
+from printprep.verify.part_3mf import ComputedPart
+from printprep.verify.rules import (
     centre_limit_mm,
     centre_offset_mm,
     contact_offset_mm,
     tilt_as_printed,
 )
+from printprep.verify.run import verify
 
 MODELS = (
     "spot_low_resolution", "koala_low_resolution", "goathead", "bunny", "bottle_A_brown",
@@ -102,9 +102,9 @@ def measure(
     }
 
 
-def figures(part: CarriedPart, printed: Printed) -> dict[str, Any]:
+def figures(part: ComputedPart, printed: Printed) -> dict[str, Any]:
     """A part's figures, computed and printed, and how far they are apart."""
-    said = printed.said.filament_mm3
+    said = printed.slicer_summary.filament_mm3
     return {
         "bodies": len(part.bodies),
         "lean_deg": part.lean.angle_deg,
@@ -118,7 +118,9 @@ def figures(part: CarriedPart, printed: Printed) -> dict[str, Any]:
         "tilt_printed_deg": tilt_as_printed(printed, part.lean),
         "in_cavities_mm3": printed.in_cavities_mm3,
         "filament_off_percent": None if not said else 100 * (printed.filament_mm3 / said - 1),
-        "print_hours": None if printed.said.seconds is None else printed.said.seconds / 3600,
+        "print_hours": None
+        if printed.slicer_summary.seconds is None
+        else printed.slicer_summary.seconds / 3600,
     }
 
 

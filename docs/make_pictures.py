@@ -9,7 +9,7 @@ from pathlib import Path
 
 import printprep
 from printprep.mesh.measure import arrays
-from printprep.report.thumbnail import thumbnail_png
+from printprep.render.thumbnail import thumbnail_png
 
 HERE = Path(__file__).resolve().parent
 SIZE = 400

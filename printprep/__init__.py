@@ -14,6 +14,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from printprep.version import __version__
+
 if TYPE_CHECKING:
     from printprep.errors import (
         GeometryError,
@@ -23,11 +25,9 @@ if TYPE_CHECKING:
         ToolError,
         UsageError,
     )
-    from printprep.pipeline import hollow
+    from printprep.pipeline.hollow import hollow
     from printprep.profiles import Profile, load_profile
     from printprep.types import Finding, HollowResult
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Finding",
@@ -54,7 +54,7 @@ _HOME = {
     "Profile": "printprep.profiles",
     "ToolError": "printprep.errors",
     "UsageError": "printprep.errors",
-    "hollow": "printprep.pipeline",
+    "hollow": "printprep.pipeline.hollow",
     "load_profile": "printprep.profiles",
 }
 

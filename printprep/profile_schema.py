@@ -55,7 +55,7 @@ class Material(_Frozen):
     density_g_cm3: float = _bounded(0.1, 25.0)
 
 
-class Drain(_Frozen):
+class DrainSettings(_Frozen):
     """Holes per sealed cavity; count 0 where the process leaves nothing inside to drain.
 
     count : holes of each cavity, at least;  cm3_per_hole : one more for every so much that it
@@ -73,7 +73,7 @@ class Drain(_Frozen):
         return max(self.count, math.ceil(volume_mm3 / 1000 / self.cm3_per_hole))
 
 
-class Stability(_Frozen):
+class StabilitySettings(_Frozen):
     """The lean a part must stand, solved for with a margin, and how far a base may go."""
 
     lean_deg: float = _bounded(0.0, 60.0)
@@ -89,7 +89,7 @@ class SlicerSettings(_Frozen):
     check_with: Literal["prusa-slicer"] | None = None
 
 
-class Infill(_Frozen):
+class InfillSettings(_Frozen):
     """The slicer's sparse infill, where it takes the place of cavities.
 
     perimeters : lines of wall; None: as many as the wall is thick.
@@ -112,10 +112,10 @@ class Profile(_Frozen):
     column_slenderness: float | None = _bounded(2.0, 100.0, default=None)
     printer: Printer
     material: Material
-    drain: Drain = Drain()
-    stability: Stability
+    drain: DrainSettings = DrainSettings()
+    stability: StabilitySettings
     slicer: SlicerSettings = SlicerSettings()
-    infill: Infill | None = None
+    infill: InfillSettings | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -1,12 +1,13 @@
 """How a long run tells what it is doing: one stage at a time, on stderr, or not at all.
 
 Whoever runs a stage opens ``progress.stage(name)`` around it, by the names in ``STAGES``.
-Nothing here measures: seconds are the pipeline's own, so that silence costs nothing.
+A ``Stopwatch`` measures the stages of a run as it tells them.
 """
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from types import MappingProxyType
@@ -64,3 +65,22 @@ SILENT: Progress = Silent()
 def for_terminal(*, quiet: bool = False) -> Progress:
     """A spinner when a person watches stderr, silence otherwise."""
     return SILENT if quiet or not sys.stderr.isatty() else Spinner()
+
+
+class Stopwatch:
+    """Measures the stages of a run; ``seconds`` holds them by name, in order.
+
+    Seconds go to the summary alone, never into a file that must be the same next time.
+    """
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time what runs inside, under this name."""
+        start = time.perf_counter()
+        with self._progress.stage(name):
+            yield
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start

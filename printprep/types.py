@@ -11,13 +11,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
-    import numpy as np
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
-    Bool = NDArray[np.bool_]
+    from printprep.arrays import Bool, Float, Int
+
 
 Severity = Literal["info", "warning", "error"]
 SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a file is written for
@@ -365,7 +362,7 @@ class Infill:
 
 
 @dataclass(frozen=True)
-class OtherWay:
+class AlternativeFill:
     """What the fill that was not chosen would weigh, estimated."""
 
     fill: Fill
@@ -397,7 +394,7 @@ class HollowResult:
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
     infill: Infill | None = None
-    other_way: OtherWay | None = None
+    alternative_fill: AlternativeFill | None = None
 
     @property
     def lean_deg(self) -> float:
@@ -406,6 +403,6 @@ class HollowResult:
 
     def write(self, path: Any, slicer: SlicerName = "prusa") -> None:
         """Write the part; the suffix chooses the format (.3mf carries PrusaSlicer's settings)."""
-        from printprep.report.export import write_part
+        from printprep.output.part_file import write_part
 
         write_part(self, path, slicer)

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 from manifold3d import Manifold
 
-from printprep.check import Subject, as_written, run_rules, subject_of_solid
+from printprep.check import CheckContext, context_of_solid, run_rules
 from printprep.mesh.measure import arrays
+from printprep.mesh.quantize import quantized
 from printprep.profiles import Profile, load_profile
 from printprep.stand.stability import stability
 from printprep.types import (
@@ -45,9 +46,9 @@ def roofed(deg: float, size: float = 20.0, wall: float = 2.0) -> Manifold:
     )
 
 
-def subject(part: Manifold, **changes: object) -> Subject:
+def context(part: Manifold, **changes: object) -> CheckContext:
     """A part as a file that came so, with any circumstance changed by name."""
-    plain = subject_of_solid(as_written(part), stability(part, 0.2), Lean(10.0), Repair("as-is"))
+    plain = context_of_solid(quantized(part), stability(part, 0.2), Lean(10.0), Repair("as-is"))
     return replace(plain, **changes)
 
 
@@ -74,7 +75,7 @@ def hollow_result(
     placement = np.eye(4)
     placement[:3, 3] = (1.5, 0.0, -2.0)
     part = Part(
-        manifold=as_written(outside - cavity),
+        manifold=quantized(outside - cavity),
         outside=outside,
         cavities=(cavity,),
         base=Base(plate, seat_mm=1.0, growth_mm=2.0) if with_base else None,
@@ -82,7 +83,7 @@ def hollow_result(
         placement=placement,
     )
     standing = stability(part.manifold, settings.printer.first_layer_mm)
-    examined = Subject(
+    examined = CheckContext(
         part.manifold, outside, (cavity,), standing, Lean(10.0), Repair("as-is"), hollowed=True
     )
     vertices, faces = arrays(solid)

@@ -7,11 +7,11 @@ from pathlib import Path
 from manifold3d import Manifold
 
 from printprep.cavity.surface import cavity_surface
+from printprep.grid.depth import measure_depths
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
 from printprep.mesh.repair import repair
 from printprep.profiles import Profile
-from printprep.voxel.depth import measure_depths
 
 
 def room_of(path: Path, up: str, size_mm: float, profile: Profile) -> tuple[Manifold, Manifold]:

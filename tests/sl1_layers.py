@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import generate_binary_structure, label
 
+from printprep.mesh.quantize import quantized
 from printprep.mesh.write import to_bytes
-from printprep.mesh.written import as_written
 from printprep.slicer.child import run_child
 from printprep.slicer.process import find_slicer
 
@@ -80,7 +80,7 @@ def empty_in_layers(part: Manifold) -> Bool:
         ini, stl, sl1 = (Path(name) / f"part.{suffix}" for suffix in ("ini", "stl", "sl1"))
         lines = [f"{key} = {value}" for key, value in settings.items()]
         ini.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        stl.write_bytes(to_bytes(as_written(part), ".stl"))
+        stl.write_bytes(to_bytes(quantized(part), ".stl"))
         arguments = ["--export-sla", "--load", str(ini), "--post-process", "", "--output", str(sl1)]
         done = run_child(find_slicer().executable, [*arguments, str(stl)], Path(name), 600)
         assert sl1.is_file(), done.stdout

@@ -14,11 +14,11 @@ from manifold3d import Manifold
 from numpy.typing import NDArray
 
 from printprep.mesh.measure import arrays, winding
+from printprep.mesh.quantize import quantized
 from printprep.mesh.write import to_bytes
-from printprep.mesh.written import as_written
 from printprep.profiles import Profile
-from printprep.slicer.export import FILAMENT_DIAMETER_MM, profile_settings
 from printprep.slicer.process import find_slicer
+from printprep.slicer.prusa_ini import FILAMENT_DIAMETER_MM, profile_settings
 
 Float = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def support_inside_g(
     threshold_deg : support_material_threshold; 0 is the automatic one.
     """
     x, y, _ = profile.printer.bed_mm
-    part = as_written(outside - cavity).translate((x / 2, y / 2, 0))
+    part = quantized(outside - cavity).translate((x / 2, y / 2, 0))
     settings = {
         **profile_settings(profile),
         # Hollow, without solid layers: quicker, and supports do not depend on it (a cow's cavity at

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.grid.balls import deepest_points
+from printprep.grid.distance import Surface
 from printprep.mesh.measure import bodies
-from printprep.mesh.written import as_written
+from printprep.mesh.quantize import quantized
 from printprep.types import Base, Part, Plane, Solid
-from printprep.voxel.balls import deepest_points
-from printprep.voxel.distance import Surface
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
+
 
 # Where a search for the largest ball starts: as many of the points farthest from the surface.
 STARTS = 8
@@ -25,19 +25,25 @@ STARTS = 8
 COARSE_CELLS = 12
 
 
-def cut(room: Manifold, parts: Sequence[Manifold], planes: Sequence[Plane | None]) -> Manifold:
+def cut(
+    hollowable_volume: Manifold, parts: Sequence[Manifold], planes: Sequence[Plane | None]
+) -> Manifold:
     """What of the room for cavities lies above the plane of its body; one plane for each part."""
     from manifold3d import Manifold, OpType
 
     if len(parts) == 1:
-        return _above(room, planes[0])
-    pieces = [_above(room ^ body, plane) for body, plane in zip(parts, planes, strict=True)]
+        return _above(hollowable_volume, planes[0])
+    pieces = [
+        _above(hollowable_volume ^ body, plane) for body, plane in zip(parts, planes, strict=True)
+    ]
     return Manifold.batch_boolean(pieces, OpType.Add)
 
 
-def cavities_of(room: Manifold, min_feature_mm: float) -> tuple[Manifold, ...]:
+def cavities_of(hollowable_volume: Manifold, min_feature_mm: float) -> tuple[Manifold, ...]:
     """The pieces of a cavity that can hold a ball of the minimum feature, largest first."""
-    pieces = [piece for piece in bodies(room) if _holds_ball(piece, min_feature_mm / 2)]
+    pieces = [
+        piece for piece in bodies(hollowable_volume) if _holds_ball(piece, min_feature_mm / 2)
+    ]
     return tuple(sorted(pieces, key=lambda piece: (-piece.volume(), piece.bounding_box())))
 
 
@@ -47,12 +53,16 @@ def make_part(solid: Solid, base: Base | None, cavities: Sequence[Manifold]) -> 
 
     outside = solid.manifold if base is None else solid.manifold + base.manifold
     whole = Manifold.batch_boolean([outside, *cavities], OpType.Subtract)
-    part = as_written(whole)
+    part = quantized(whole)
     return Part(part, outside, tuple(cavities), base, solid.name, solid.placement)
 
 
-def _above(room: Manifold, plane: Plane | None) -> Manifold:
-    return room if plane is None else room.trim_by_plane(plane.normal, plane.offset_mm)
+def _above(hollowable_volume: Manifold, plane: Plane | None) -> Manifold:
+    return (
+        hollowable_volume
+        if plane is None
+        else hollowable_volume.trim_by_plane(plane.normal, plane.offset_mm)
+    )
 
 
 def _holds_ball(piece: Manifold, radius_mm: float) -> bool:

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.grid.distance import DepthField, Surface
 from printprep.mesh.measure import arrays
-from printprep.mesh.pierced import folded
-from printprep.voxel.distance import DepthField, Surface
+from printprep.mesh.self_intersections import folded
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
     from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
+
     Float32 = NDArray[np.float32]
 
 # Flat regions may move this much when triangles are merged.

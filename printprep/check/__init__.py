@@ -1,6 +1,6 @@
 """What can be wrong with a part: one rule a file, the same for our own parts and for any mesh.
 
-``run_rules(subject, profile)`` runs them all; a rule is registered by being imported here.
+``run_rules(context, profile)`` runs them all; a rule is registered by being imported here.
 """
 
 from printprep.check import (  # noqa: F401  (imported to register their rules)
@@ -31,20 +31,17 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     wall_thickness,
     watertight,
 )
+from printprep.check.context import CheckContext, context_of_solid
 from printprep.check.registry import Rule, at_or_above, rules, run_rules
-from printprep.check.subject import Subject, subject_of_solid
 from printprep.check.walls import Wall, wall_min_mm
-from printprep.mesh.written import as_written, written_arrays
 
 __all__ = [
+    "CheckContext",
     "Rule",
-    "Subject",
     "Wall",
-    "as_written",
     "at_or_above",
+    "context_of_solid",
     "rules",
     "run_rules",
-    "subject_of_solid",
     "wall_min_mm",
-    "written_arrays",
 ]

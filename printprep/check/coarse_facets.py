@@ -12,9 +12,9 @@ from printprep.mesh.measure import arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.arrays import Float, Int
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
-    from printprep.types import Float, Int
 
 # A bend sharper than this is an edge that is meant; one flatter is not seen.
 _SHARPEST_DEG, _FLATTEST_DEG = 40.0, 1.0
@@ -26,14 +26,14 @@ LEAST_FACETS = 12
 
 
 @rule("coarse-facets")
-def coarse_facets(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def coarse_facets(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells that facets will be seen where the model means to be round.
 
     Between two facets of width w that bend by δ, a round surface would rise by w δ / 8 above the
     chord; coarse is what misses by more than a layer, or than an eye sees.
     """
     limit = max(profile.printer.layer_height_mm, _SEEN_MM)
-    miss, area, facet = _misses(*arrays(subject.outside))
+    miss, area, facet = _misses(*arrays(context.outside))
     coarse = miss > limit
     share = float(area[coarse].sum() / area.sum()) if len(area) else 0.0
     if share < LEAST_SHARE or len(np.unique(facet[coarse])) < LEAST_FACETS:

@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # A foot smaller than this under something taller than that is knocked off by the nozzle.
@@ -18,21 +18,21 @@ TALL_MM = 20.0
 
 
 @rule("contact-area")
-def contact_area(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def contact_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a tall print on a small foot from coming loose half way up.
 
     Filament only: resin hangs on supports, powder holds what lies in it.
     """
-    area = subject.stability.contact_area_mm2
-    if profile.process != "fdm" or subject.stability.tilt_deg is None:
+    area = context.stability.contact_area_mm2
+    if profile.process != "fdm" or context.stability.tilt_deg is None:
         return
-    if area >= LEAST_MM2 or subject.size_mm[2] <= TALL_MM:
+    if area >= LEAST_MM2 or context.size_mm[2] <= TALL_MM:
         return
-    x, y = subject.stability.support_polygon_mm.mean(axis=0).tolist()
+    x, y = context.stability.support_polygon_mm.mean(axis=0).tolist()
     yield Finding(
         "contact-area",
         "warning",
-        f"It is {subject.size_mm[2]:.0f} mm tall and touches the bed with {area:.1f} mm² only.",
+        f"It is {context.size_mm[2]:.0f} mm tall and touches the bed with {area:.1f} mm² only.",
         "Print it with a brim, or give it a base (hollow --base always).",
         value=area,
         limit=LEAST_MM2,

@@ -11,7 +11,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # Height below which a triangle faces nowhere in single precision, as a share of the size.
@@ -21,10 +21,10 @@ LEAST_SHARE = 0.001
 
 
 @rule("degenerate-triangles")
-def degenerate_triangles(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells of triangles without an area, which face nowhere and which programs drop or keep."""
     del profile
-    raw = subject.raw
+    raw = context.raw
     if raw is None:
         return
     corners = raw.vertices[raw.faces]

@@ -9,14 +9,14 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 _WHAT = {"resin": "resin", "powder": "powder"}
 
 
 @rule("drain-too-small")
-def drain_too_small(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def drain_too_small(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents holes through which nothing runs: too narrow themselves, or behind a narrow neck.
 
     The widest ball that gets out of a space, by any way, is compared with the profile's drain.
@@ -24,7 +24,7 @@ def drain_too_small(subject: Subject, profile: Profile) -> Iterator[Finding]:
     what, diameter = _WHAT.get(profile.process), profile.drain.diameter_mm
     if what is None or diameter is None:
         return
-    found = [pocket for pocket in subject.pockets(diameter) if pocket.kind == "narrow"]
+    found = [pocket for pocket in context.pockets(diameter) if pocket.kind == "narrow"]
     if not found:
         return
     total = sum(pocket.volume_mm3 for pocket in found)

@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # Less than this is the slope that floors are given.
@@ -17,9 +17,9 @@ FILLED_MM3 = 100.0
 
 
 @rule("drain-filled")
-def drain_filled(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def drain_filled(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents wonder at material where there was room for a cavity."""
-    found = subject.drainage
+    found = context.drainage
     if found is None:
         return
     diameter = profile.drain.diameter_mm

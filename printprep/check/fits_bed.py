@@ -10,7 +10,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # A part made exactly as large as the bed still fits after float32.
@@ -20,12 +20,12 @@ _WRONG_UNIT = 10.0
 
 
 @rule("fits-bed")
-def fits_bed(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def fits_bed(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents slicing, and waiting for, a part the printer cannot hold.
 
     A quarter turn on the bed counts as a fit: slicers do that.
     """
-    size, bed = subject.size_mm, profile.printer.bed_mm
+    size, bed = context.size_mm, profile.printer.bed_mm
     turned = (size[1], size[0], size[2])
     best = min((size, turned), key=lambda sides: _excess(sides, bed))
     excess = _excess(best, bed)

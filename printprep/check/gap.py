@@ -11,7 +11,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 TOLERANCE_MM = 0.01
@@ -25,7 +25,7 @@ _EVEN = 0.5
 
 
 @rule("gap")
-def gap(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def gap(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells of surfaces that may grow together: a hinge that sticks, letters that fill up.
 
     Sides that are nearly parallel and stay apart; where surfaces meet in a crease nothing is lost.
@@ -35,7 +35,7 @@ def gap(subject: Subject, profile: Profile) -> Iterator[Finding]:
         return
     patches = [
         patch
-        for patch in subject.narrow_below(limit - TOLERANCE_MM).patches(_LINK_MM)
+        for patch in context.narrow_below(limit - TOLERANCE_MM).patches(_LINK_MM)
         if patch.total_mm2 >= LEAST_MM2
         and np.percentile(patch.thick_mm, 10) >= _EVEN * np.median(patch.thick_mm)
     ]

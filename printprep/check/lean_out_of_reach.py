@@ -10,26 +10,26 @@ from printprep.stand.lean import tilt_toward
 from printprep.types import Advice, Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("lean-out-of-reach")
-def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def lean_out_of_reach(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents the belief that more ballast would help where only feet or pose can.
 
     Near the largest lean that any filling reaches the mass explodes, so the part is solved for 0.9
     of it; where even upright is out of reach, no filling helps and the lightest shell is written.
     """
-    reachable = subject.reachable_deg
+    reachable = context.reachable_deg
     if reachable is None:
         return
     if reachable > 0:
         message = (
-            f"A lean of {subject.lean} is out of reach: no filling of this model stands "
+            f"A lean of {context.lean} is out of reach: no filling of this model stands "
             f"beyond {reachable:.1f}°"
         )
-        tilt = tilt_toward(subject.stability, subject.lean)
+        tilt = tilt_toward(context.stability, context.lean)
         message += "." if tilt is None else f"; this part stands to {tilt:.1f}°."
     else:
         message = "No filling makes it stand: its weight lies outside its feet whatever is inside."
@@ -38,11 +38,11 @@ def lean_out_of_reach(subject: Subject, profile: Profile) -> Iterator[Finding]:
         "lean-out-of-reach",
         "error",
         message,
-        _ways_out(subject.advice),
+        _ways_out(context.advice),
         value=reachable,
-        limit=subject.lean.angle_deg,
+        limit=context.lean.angle_deg,
         unit="deg",
-        at_mm=subject.stability.centre_of_mass_mm,
+        at_mm=context.stability.centre_of_mass_mm,
     )
 
 

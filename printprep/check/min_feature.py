@@ -10,7 +10,7 @@ from printprep.check.wall_thickness import FACETED
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # Less surface than this is a tip, and tips are meant to end.
@@ -18,13 +18,13 @@ LEAST_MM2 = 5.0
 
 
 @rule("min-feature")
-def min_feature(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a pin or a rod that breaks off, or that a slicer leaves out.
 
     A member counts where it is thinner than the profile's minimum feature both ways across.
     """
     limit = FACETED * profile.min_feature_mm
-    thin = subject.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
+    thin = context.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
     rods = thin.only((thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm))
     if rods.total_mm2 < LEAST_MM2:
         return

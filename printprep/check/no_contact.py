@@ -9,16 +9,16 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("no-contact")
-def no_contact(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def no_contact(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a first layer that is empty, or a body that starts in mid-air."""
-    if subject.stability.tilt_deg is not None:
+    if context.stability.tilt_deg is not None:
         return
-    x, y, z = subject.stability.centre_of_mass_mm
+    x, y, z = context.stability.centre_of_mass_mm
     layer = profile.printer.first_layer_mm
     yield Finding(
         "no-contact",

@@ -10,21 +10,21 @@ from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("non-manifold-edges")
-def non_manifold_edges(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def non_manifold_edges(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents programs from parting the surface in different ways where it touches itself."""
     del profile
-    if subject.raw is None:
+    if context.raw is None:
         return
-    ends, count = shared_edges(subject.raw.faces)
+    ends, count = shared_edges(context.raw.faces)
     crowded = ends[(count > 2) & (count % 2 == 0)]
     if len(crowded) == 0:
         return
-    x, y, z = subject.raw.vertices[crowded[0]].mean(axis=0).tolist()
+    x, y, z = context.raw.vertices[crowded[0]].mean(axis=0).tolist()
     yield Finding(
         "non-manifold-edges",
         "warning",

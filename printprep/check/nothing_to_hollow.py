@@ -9,14 +9,14 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("nothing-to-hollow")
-def nothing_to_hollow(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def nothing_to_hollow(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents the surprise of a part that weighs what it did before."""
-    if not subject.hollowed or subject.infilled or subject.cavities:
+    if not context.hollowed or context.infilled or context.cavities:
         return
     yield Finding(
         "nothing-to-hollow",

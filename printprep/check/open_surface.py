@@ -10,21 +10,21 @@ from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("open-surface")
-def open_surface(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def open_surface(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a slicer from closing holes its own way, or from dropping whole layers."""
     del profile
-    if subject.raw is None:
+    if context.raw is None:
         return
-    ends, count = shared_edges(subject.raw.faces)
+    ends, count = shared_edges(context.raw.faces)
     open_ = ends[count % 2 == 1]
     if len(open_) == 0:
         return
-    x, y, z = subject.raw.vertices[open_[0]].mean(axis=0).tolist()
+    x, y, z = context.raw.vertices[open_[0]].mean(axis=0).tolist()
     yield Finding(
         "open-surface",
         "error",

@@ -12,15 +12,15 @@ from printprep.mesh.orient import right_side_out
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("orientation")
-def orientation(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a solid from being taken for a void where triangles face inward."""
     del profile
-    raw = subject.raw
+    raw = context.raw
     if raw is None:
         return
     outward, _ = right_side_out(raw.vertices, raw.faces)

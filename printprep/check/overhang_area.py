@@ -13,7 +13,7 @@ from printprep.mesh.measure import arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # What one support post holds anyway.
@@ -23,7 +23,7 @@ _SLACK_DEG = 0.01
 
 
 @rule("overhang-area")
-def overhang_area(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells what supports will be needed, outside and in cavities that are open.
 
     Surface that leans outward by more than the profile's overhang, above the first layer.  Powder
@@ -31,7 +31,7 @@ def overhang_area(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """
     if profile.overhang_deg >= 90:
         return
-    vertices, faces = arrays(subject.outside)
+    vertices, faces = arrays(context.outside)
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(normals, axis=1)

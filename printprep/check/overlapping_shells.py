@@ -9,18 +9,18 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("overlapping-shells")
-def overlapping_shells(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def overlapping_shells(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells that shells overlap: slicers print what they cover together, other programs differ."""
     del profile
-    pierced = subject.pierced
-    if pierced is None or not pierced.apart.any():
+    self_intersections = context.self_intersections
+    if self_intersections is None or not self_intersections.apart.any():
         return
-    at = pierced.at_mm[pierced.apart]
+    at = self_intersections.at_mm[self_intersections.apart]
     x, y, z = at[0].tolist()
     yield Finding(
         "overlapping-shells",

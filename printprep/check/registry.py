@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from printprep.types import Finding, Severity
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-Rule = Callable[["Subject", "Profile"], Iterable[Finding]]
+Rule = Callable[["CheckContext", "Profile"], Iterable[Finding]]
 
 _RANK: Mapping[Severity, int] = MappingProxyType({"info": 0, "warning": 1, "error": 2})
 _RULES: dict[str, Rule] = {}
@@ -38,9 +38,9 @@ def rules() -> Mapping[str, Rule]:
     return MappingProxyType(dict(sorted(_RULES.items())))
 
 
-def run_rules(subject: Subject, profile: Profile) -> tuple[Finding, ...]:
+def run_rules(context: CheckContext, profile: Profile) -> tuple[Finding, ...]:
     """What all rules find, the worst first, then by rule id, then as the rule gave them."""
-    found = [item for check in rules().values() for item in check(subject, profile)]
+    found = [item for check in rules().values() for item in check(context, profile)]
     return sorted_findings(found)
 
 

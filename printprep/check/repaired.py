@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding, Severity
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # What a printed layer hides.
@@ -17,7 +17,7 @@ _MOVED_LIMIT_MM = 0.1
 
 
 @rule("repaired")
-def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def repaired(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a slicer from guessing what an open or tangled surface means.
 
     On a file as it came it tells what was judged instead of it: warning where holes were closed or
@@ -26,13 +26,13 @@ def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
     where it moved the surface by more than a layer hides.
     """
     del profile
-    repair = subject.repair
-    if repair.rung == "as-is" or (subject.hollowed and repair.moved_max_mm <= _MOVED_LIMIT_MM):
+    repair = context.repair
+    if repair.rung == "as-is" or (context.hollowed and repair.moved_max_mm <= _MOVED_LIMIT_MM):
         return
     moved_mm = round(repair.moved_max_mm, 4)  # below that it is arithmetic, not repair
     done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
     moved = f"the surface moved by up to {moved_mm:.2g} mm" if moved_mm else "nothing moved"
-    if subject.hollowed:
+    if context.hollowed:
         severity: Severity = "warning"
         message = f"The model had to be repaired, and {moved} ({done})."
         fix = "Look at the part before printing it, or repair the model where it was made."
@@ -46,6 +46,6 @@ def repaired(subject: Subject, profile: Profile) -> Iterator[Finding]:
         message,
         fix,
         value=moved_mm,
-        limit=_MOVED_LIMIT_MM if subject.hollowed else 0.0,
+        limit=_MOVED_LIMIT_MM if context.hollowed else 0.0,
         unit="mm",
     )

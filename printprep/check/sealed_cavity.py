@@ -12,19 +12,19 @@ from printprep.mesh.measure import shells
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 _TRAPS = {"fdm": "air", "resin": "liquid resin", "powder": "powder"}
 
 
 @rule("sealed-cavity")
-def sealed_cavity(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def sealed_cavity(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a part that carries its weight in resin or powder for ever, or bursts in the cure.
 
     Counts every void, the model's own too.  With filament only air stays inside: information.
     """
-    _, voids = shells(subject.part)
+    _, voids = shells(context.part)
     if not voids:
         return
     largest = max(voids, key=lambda void: void.volume())

@@ -9,18 +9,18 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("self-intersection")
-def self_intersection(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def self_intersection(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents slicers from disagreeing on what is inside where a surface passes through itself."""
     del profile
-    pierced = subject.pierced
-    if pierced is None or pierced.apart.all():
+    self_intersections = context.self_intersections
+    if self_intersections is None or self_intersections.apart.all():
         return
-    at = pierced.at_mm[~pierced.apart]
+    at = self_intersections.at_mm[~self_intersections.apart]
     x, y, z = at[0].tolist()
     yield Finding(
         "self-intersection",

@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # A vacuum of one bar on this area pulls with 10 N, as a layer of some square centimetres does.
@@ -17,7 +17,7 @@ LEAST_MM2 = 100.0
 
 
 @rule("suction-cup")
-def suction_cup(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def suction_cup(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents layers that tear off, or film that wears, where each peel pulls against a vacuum.
 
     A cup is an empty region of a layer with no way to the outside through the layers before it; the
@@ -25,7 +25,7 @@ def suction_cup(subject: Subject, profile: Profile) -> Iterator[Finding]:
     """
     if profile.process != "resin":
         return
-    cups = [cup for cup in subject.cups if cup.area_mm2 >= LEAST_MM2]
+    cups = [cup for cup in context.cups if cup.area_mm2 >= LEAST_MM2]
     if not cups:
         return
     widest = max(cups, key=lambda cup: cup.area_mm2)

@@ -10,25 +10,25 @@ from printprep.stand.lean import tilt_toward
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 
 @rule("tilt")
-def tilt(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def tilt(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a figure that falls over on the shelf, or on the bed while it prints.
 
     Silent where another rule names the cause: no contact at all, or a lean out of reach.
     """
     del profile
-    tilt_deg = tilt_toward(subject.stability, subject.lean)
-    if tilt_deg is None or subject.reachable_deg is not None or tilt_deg >= subject.lean.angle_deg:
+    tilt_deg = tilt_toward(context.stability, context.lean)
+    if tilt_deg is None or context.reachable_deg is not None or tilt_deg >= context.lean.angle_deg:
         return
     if tilt_deg < 0:
         message = f"It tips over by itself ({tilt_deg:.1f}°); the lean asked for is"
     else:
         message = f"It tips over at a lean of {tilt_deg:.1f}°; the lean asked for is"
-    if subject.hollowed:
+    if context.hollowed:
         fix = "Give it a base (--base always) or another pose (--up)."
     else:
         fix = (
@@ -37,10 +37,10 @@ def tilt(subject: Subject, profile: Profile) -> Iterator[Finding]:
     yield Finding(
         "tilt",
         "error",
-        f"{message} {subject.lean}.",
+        f"{message} {context.lean}.",
         fix,
         value=tilt_deg,
-        limit=subject.lean.angle_deg,
+        limit=context.lean.angle_deg,
         unit="deg",
-        at_mm=subject.stability.centre_of_mass_mm,
+        at_mm=context.stability.centre_of_mass_mm,
     )

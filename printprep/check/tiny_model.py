@@ -9,17 +9,17 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 LEAST_SIDE_MM = 1.0
 
 
 @rule("tiny-model")
-def tiny_model(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def tiny_model(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a file in metres, or without a unit, from printing as a crumb."""
     del profile
-    side = max(subject.size_mm)
+    side = max(context.size_mm)
     if side >= LEAST_SIDE_MM:
         return
     yield Finding(

@@ -9,13 +9,13 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
-    from printprep.pour import Pocket
+    from printprep.check.context import CheckContext
+    from printprep.drainage.trapped import Pocket
     from printprep.profiles import Profile
 
 
 @rule("trapped-volume")
-def trapped_volume(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def trapped_volume(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents resin that stays in a part with holes, and leaks for weeks or cures where it lies.
 
     What does not run out of the part as it stands, through the ways out that it has; turning it is
@@ -26,7 +26,7 @@ def trapped_volume(subject: Subject, profile: Profile) -> Iterator[Finding]:
     # Powder is shaken and blown out, whichever way the part stands.
     if profile.process != "resin" or diameter is None:
         return
-    pools = [pocket for pocket in subject.pockets(diameter) if pocket.kind == "pool"]
+    pools = [pocket for pocket in context.pockets(diameter) if pocket.kind == "pool"]
     for enclosed in (True, False):
         found = [pocket for pocket in pools if pocket.enclosed is enclosed]
         if found:

@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 # Less than this, over all layers, is a few crumbs that bridge.
@@ -17,18 +17,18 @@ AREA_MM2 = 0.5
 
 
 @rule("unsupported-ceiling")
-def unsupported_ceiling(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a ceiling that sags into the cavity, or support shut in where no hand can reach.
 
     By the slicer's own rule, layer by layer; its loose pieces, which print on air, count at once.
     """
-    if profile.process != "fdm" or not subject.cavities:
+    if profile.process != "fdm" or not context.cavities:
         return
     from printprep.check.walls import united
     from printprep.overhang.limits import acceptance
     from printprep.overhang.rule import unsupported_ceilings
 
-    found = unsupported_ceilings(united(subject.cavities), acceptance(profile))
+    found = unsupported_ceilings(united(context.cavities), acceptance(profile))
     worst = found.worst
     if worst is None or (found.area_mm2 <= AREA_MM2 and not found.islands):
         return

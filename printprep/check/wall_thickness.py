@@ -9,7 +9,7 @@ from printprep.check.registry import rule
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 TOLERANCE_MM = 0.05
@@ -22,15 +22,15 @@ HARDLY = 0.5
 
 
 @rule("wall-thickness")
-def wall_thickness(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def wall_thickness(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a wall that prints with holes, or breaks when the part is touched.
 
     Around cavities it is the exact distance of the finished surfaces, and an error.  What is thin
     by design, a fin or an ear, is told: as a warning where less than half the wall is left.
     """
-    wall = subject.wall
+    wall = context.wall
     if wall is not None and wall.value_mm < profile.wall_mm - TOLERANCE_MM:
-        if subject.hollowed:
+        if context.hollowed:
             fix = "Hollow it with a finer grid (--resolution), or report the model as a defect."
         else:
             fix = "Hollow the solid model again with this wall, or name the wall meant with --wall."
@@ -44,14 +44,14 @@ def wall_thickness(subject: Subject, profile: Profile) -> Iterator[Finding]:
             limit=profile.wall_mm,
             unit="mm",
             at_mm=wall.at_mm,
-            area_mm2=subject.thin_below(FACETED * profile.wall_mm).total_mm2,
+            area_mm2=context.thin_below(FACETED * profile.wall_mm).total_mm2,
         )
     else:
-        yield from _fins(subject, profile)
+        yield from _fins(context, profile)
 
 
-def _fins(subject: Subject, profile: Profile) -> Iterator[Finding]:
-    thin = subject.thin_below(FACETED * profile.wall_mm)
+def _fins(context: CheckContext, profile: Profile) -> Iterator[Finding]:
+    thin = context.thin_below(FACETED * profile.wall_mm)
     # What lies on the bed prints whole however thin it is.
     lying = thin.middle[:, 2] < thin.thick_mm / 2 + profile.printer.first_layer_mm
     fins = thin.only((thin.wide_mm >= profile.min_feature_mm) & ~lying)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 
 class Walled(Protocol):

@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.registry import rule
-from printprep.mesh.written import crowded_edges, written_arrays
+from printprep.mesh.quantize import crowded_edges, quantized_arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
 _FIX = "Run it through `printprep hollow`, which repairs it, or repair it where it was made."
 
 
 @rule("watertight")
-def watertight(subject: Subject, profile: Profile) -> Iterator[Finding]:
+def watertight(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a slicer that silently fills a cavity, or leaves a layer open.
 
     One triangle missing from an inner shell and PrusaSlicer 2.5.0 prints the cavity solid without
@@ -26,13 +26,13 @@ def watertight(subject: Subject, profile: Profile) -> Iterator[Finding]:
     Edges of a file as it came are judged on its own triangles, by other rules.
     """
     del profile
-    status = str(subject.part.status().name)
+    status = str(context.part.status().name)
     if status != "NoError":
         yield Finding("watertight", "error", f"The part is not a manifold: {status}.", _FIX)
         return
-    vertices, faces = written_arrays(subject.part)
+    vertices, faces = quantized_arrays(context.part)
     crowded = crowded_edges(faces)
-    if len(crowded) and subject.raw is None:
+    if len(crowded) and context.raw is None:
         x, y, z = vertices[crowded[0]].mean(axis=0).tolist()
         yield Finding(
             "watertight",
@@ -44,7 +44,7 @@ def watertight(subject: Subject, profile: Profile) -> Iterator[Finding]:
             unit="edges",
             at_mm=(x, y, z),
         )
-    volume_mm3 = float(subject.part.volume())
+    volume_mm3 = float(context.part.volume())
     if volume_mm3 <= 0:
         yield Finding(
             "watertight",

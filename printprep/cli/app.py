@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from printprep import __version__
+from printprep.version import __version__
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 80}
 

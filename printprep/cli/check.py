@@ -47,7 +47,7 @@ def command(
     """
     from printprep.check.registry import at_or_above
     from printprep.cli.console import stdout_console, trouble_to_stderr
-    from printprep.examine import examine
+    from printprep.pipeline.check import examine
     from printprep.progress import for_terminal
 
     found = examine(
@@ -61,12 +61,12 @@ def command(
         from printprep.report.json import check_json, to_text
 
         click.echo(
-            to_text(check_json(found.subject, found.findings, found.profile, model=str(model)))
+            to_text(check_json(found.context, found.findings, found.profile, model=str(model)))
         )
     elif quiet:
         trouble_to_stderr(found.findings)
     else:
         from printprep.report.terminal import show_check
 
-        show_check(stdout_console(), found.subject, found.findings, found.profile, verbose=verbose)
+        show_check(stdout_console(), found.context, found.findings, found.profile, verbose=verbose)
     return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0

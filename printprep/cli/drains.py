@@ -53,7 +53,7 @@ def check_plugs_output(plugs: Path, target: Path, model: Path) -> None:
     Raises UsageError for another suffix than .3mf, and for a file that is the part's or the model's
     own.
     """
-    from printprep.report.export import check_output
+    from printprep.output.part_file import check_output
 
     if plugs.suffix.lower() != ".3mf":
         raise UsageError(f"{plugs}: plugs are written as .3mf.", "Name a file that ends in .3mf.")

@@ -16,7 +16,7 @@ from printprep.cli.options import (
 from printprep.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
-    from printprep.explore import Exploration
+    from printprep.pipeline.explore import Exploration
 
 _EPILOG = """\b
 Examples:
@@ -92,7 +92,7 @@ def command(
     """
     from printprep.cli.console import stdout_console
     from printprep.cli.options import overrides
-    from printprep.explore import explore
+    from printprep.pipeline.explore import explore
     from printprep.progress import for_terminal
 
     _check_chart(chart)

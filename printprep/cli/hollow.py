@@ -18,12 +18,12 @@ from printprep.cli.options import (
     self_support_option,
 )
 from printprep.errors import UsageError
-from printprep.report.by_hand import SLICERS
+from printprep.output.manual_settings import SLICERS
 
 if TYPE_CHECKING:
     from printprep.progress import Progress
-    from printprep.slicer.verify import Verified
     from printprep.types import HollowResult, SlicerName
+    from printprep.verify.run import Verified
 
 _EPILOG = """\b
 Examples:
@@ -171,12 +171,12 @@ def command(
     profile's. Its outside is the model's, but for a base under its feet where that saves material.
     With --fail-on, nothing is written when a finding is as severe.
     """
-    from printprep.pipeline import hollow
+    from printprep.output.manual_settings import check_slicer
+    from printprep.output.part_file import check_output, format_findings, write_part
+    from printprep.output.plugs import write_plugs
+    from printprep.pipeline.hollow import hollow
     from printprep.profiles import load_profile
     from printprep.progress import for_terminal
-    from printprep.report.by_hand import check_slicer
-    from printprep.report.export import check_output, format_findings, write_part
-    from printprep.report.plugs import write_plugs
 
     target = Path(f"{model.stem}-hollow.3mf") if output is None else output
     check_output(target)
@@ -192,7 +192,7 @@ def command(
     if options["fill"] == "infill":
         _check_infill(target, slicer, simulate=simulate)
     if verify_it:
-        from printprep.slicer.verify_result import check_verifiable
+        from printprep.verify.unwritten import check_verifiable
 
         check_verifiable(target, profile, changed)
     result = hollow(
@@ -256,7 +256,7 @@ def _with_simulation(result: HollowResult) -> HollowResult:
 
 
 def _verified(result: HollowResult, progress: Progress) -> Verified:
-    from printprep.slicer.verify_result import verify_result
+    from printprep.verify.unwritten import verify_result
 
     return verify_result(result, progress=progress)
 
@@ -285,7 +285,7 @@ def _say(
 
         said = result_json(result, model=str(model), output=output)
         if verified is not None:
-            from printprep.slicer.verify_report import verify_json
+            from printprep.report.verification import verify_json
 
             said["verified"] = verify_json(verified, part=output)
         click.echo(to_text(said))
@@ -297,7 +297,7 @@ def _say(
         console = stdout_console()
         show_result(console, result, output=output, verbose=verbose)
         if verified is not None:
-            from printprep.slicer.verify_report import show_verified
+            from printprep.report.verification import show_verified
 
             console.print()
             show_verified(console, verified, with_findings=False)

@@ -89,11 +89,11 @@ def command(
     Warns when the print would tip at the lean. GCODE is changed in one step at the very end; on
     any failure it is byte for byte what it was. No network, and nothing is written elsewhere.
     """
-    from printprep.slicer.hook import already_running
+    from printprep.hook.judge import already_running
 
     _check(part, reslice, model)
     if print_setting:
-        from printprep.slicer.hook_setting import setting_line
+        from printprep.hook.command_line import setting_line
 
         click.echo(setting_line(_options_given(click.get_current_context())))
         return 0
@@ -124,9 +124,9 @@ def _judge(
 ) -> Sequence[Finding]:
     """Judge and annotate; with --strict, a print that would tip is left as it was."""
     from printprep.cli.console import trouble_to_stderr
+    from printprep.hook.gcode_file import annotate
+    from printprep.hook.judge import judge, notes
     from printprep.profiles import load_profile
-    from printprep.slicer.hook import judge, notes
-    from printprep.slicer.hook_file import annotate
     from printprep.stand.lean import lean_of
 
     asked = lean_of(lean, load_profile(profile).stability.lean_deg)
@@ -146,8 +146,8 @@ def _reslice(
     placement: dict[str, Any],
 ) -> Sequence[Finding]:
     from printprep.cli.console import trouble_to_stderr
+    from printprep.hook.reslice import reslice
     from printprep.progress import for_terminal
-    from printprep.slicer.hook_reslice import reslice
 
     done = reslice(
         gcode,

@@ -68,7 +68,7 @@ def export_command(name: str, output: Path | None, settings: tuple[str, ...]) ->
     It holds what a 3MF cannot: first layer, nozzle, line widths, filament.
     """
     from printprep.profiles import load_profile
-    from printprep.slicer.export import profile_ini
+    from printprep.slicer.prusa_ini import profile_ini
 
     text = profile_ini(load_profile(name, overrides(settings)))
     if output is None:

@@ -17,8 +17,8 @@ from printprep.cli.options import (
 from printprep.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
+    from printprep.pipeline.simulate import TriedOut
     from printprep.progress import Progress
-    from printprep.tryout import TriedOut
 
 _EPILOG = """\b
 Examples:
@@ -66,8 +66,8 @@ def command(
     """
     from printprep.check.registry import at_or_above
     from printprep.cli.console import stdout_console, trouble_to_stderr
+    from printprep.pipeline.simulate import try_out
     from printprep.progress import for_terminal
-    from printprep.tryout import try_out
 
     _check_picture(gif, ".gif")
     _check_picture(strip, ".png")
@@ -109,7 +109,7 @@ def _draw(found: TriedOut, gif: Path | None, strip: Path | None, progress: Progr
     if gif is None and strip is None:
         return
     from printprep.files import write_atomically
-    from printprep.report import animation
+    from printprep.render import animation
     from printprep.stand.fall import film
 
     part, first_layer = found.solid.manifold, found.profile.printer.first_layer_mm

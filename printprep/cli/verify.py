@@ -68,7 +68,7 @@ def command(
     from printprep.check.registry import at_or_above
     from printprep.cli.console import stdout_console, trouble_to_stderr
     from printprep.progress import for_terminal
-    from printprep.slicer.verify import verify
+    from printprep.verify.run import verify
 
     del verbose  # read where errors are reported
     found = verify(
@@ -80,13 +80,13 @@ def command(
     )
     if as_json:
         from printprep.report.json import to_text
-        from printprep.slicer.verify_report import verify_json
+        from printprep.report.verification import verify_json
 
         click.echo(to_text(verify_json(found, part=str(part))))
     elif quiet:
         trouble_to_stderr(found.findings)
     else:
-        from printprep.slicer.verify_report import show_verified
+        from printprep.report.verification import show_verified
 
         show_verified(stdout_console(), found)
     return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0

@@ -24,7 +24,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
+
 
 # Rounds of pricing before the program is handed over; the moments of some tens of half-spaces
 # describe a four-dimensional body to far below a voxel.

@@ -21,9 +21,8 @@ from printprep.stand.footing import Footing
 from printprep.types import Plane
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Float
 
-    Float = NDArray[np.float64]
 
 # Close to the largest angle the mass explodes; nine tenths of it cost little (method.md).
 SHARE_OF_REACHABLE = 0.9

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 
 from printprep.density.program import Choice, Program
+from printprep.grid.domain import with_base
 from printprep.types import Certificate, Density, Plane
-from printprep.voxel.domain import with_base
 
 PaperSolver = Literal["plane", "adam"]
 
@@ -55,9 +55,9 @@ def paper_density(
     solver : "plane", exact, or "adam", the paper's own descent, on a torch ``device``; Adam's
     result has no plane, only densities.
     """
-    from printprep.density.objective import PaperSettings
-    from printprep.density.paper_domain import PaperDomain
-    from printprep.density.plane import solve_plane
+    from printprep.paper.domain import PaperDomain
+    from printprep.paper.objective import PaperSettings
+    from printprep.paper.plane import solve_plane
 
     interior = program.interior
     domain = (
@@ -71,7 +71,7 @@ def paper_density(
     voxels = PaperDomain(solid, solid & ~free, free, nothing, free, ground)
     settings = PaperSettings(resolution=max(domain.grid.shape))
     if solver == "adam":
-        from printprep.density.adam import solve_adam
+        from printprep.paper.adam import solve_adam
 
         solution = solve_adam(voxels, settings, device=device)
     else:

@@ -12,19 +12,19 @@ import numpy as np
 from printprep.cavity.base import Feet, base_of, feet_of
 from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
+from printprep.grid.domain import reweighed
 from printprep.mesh.measure import bodies, mass_properties
 from printprep.stand.contact import contact_of, section_at_bed
 from printprep.types import Base, Lean
-from printprep.voxel.domain import reweighed
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
     from numpy.typing import NDArray
 
+    from printprep.arrays import Float
+    from printprep.grid.domain import Interior
     from printprep.profiles import Profile
-    from printprep.voxel.domain import Interior
 
-    Float = NDArray[np.float64]
 
 BasePolicy = Literal["auto", "never", "always"]
 
@@ -129,13 +129,13 @@ class Program:
             bound += solution.filling.bound
         return Choice(base, tuple(parts), volume, bound)
 
-    def drilled(self, bores: Manifold, room: Manifold) -> Program:
+    def drilled(self, bores: Manifold, hollowable_volume: Manifold) -> Program:
         """The program of the same solid with holes in it.
 
         bores : what the holes take, of the solid and of the room;  room : what there is left of it
         for cavities.
         """
-        interior = reweighed(self.interior, room - bores)
+        interior = reweighed(self.interior, hollowable_volume - bores)
         return Program(self.solid - bores, interior, self.profile)
 
     def weighing(self, moments: Sequence[Float]) -> Program:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.density.paper_domain import PaperDomain, build_domain
-from printprep.density.voxel_balance import tilt_deg
-from printprep.density.voxel_lean import Leanest, footprints, leanest
 from printprep.evaluate.methods import Method
+from printprep.paper.domain import PaperDomain, build_domain
+from printprep.paper.voxel_balance import tilt_deg
+from printprep.paper.voxel_lean import Leanest, footprints, leanest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 # The lean that is matched is met from below by this, so that rounding does not put it out of reach.
 _HAIR_DEG = 1e-7
@@ -89,10 +89,10 @@ def _at_paper_tilt(domain: PaperDomain, method: Method) -> Body:
 def _paper(domain: PaperDomain, method: Method) -> Float:
     """V of the paper's objective, as densities 0 and 1."""
     if method.solver == "adam":
-        from printprep.density.adam import solve_adam
+        from printprep.paper.adam import solve_adam
 
         return solve_adam(domain, method.settings).material.astype(np.float64)
-    from printprep.density.plane import solve_plane
+    from printprep.paper.plane import solve_plane
 
     return solve_plane(domain, method.settings).material.astype(np.float64)
 

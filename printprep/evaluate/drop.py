@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.density.voxel_balance import inertia, moments, support_polygon
+from printprep.paper.voxel_balance import inertia, moments, support_polygon
 from printprep.stand.motion import STEP_S, Motion
 from printprep.stand.scene import Scene
 from printprep.stand.simulate import SECONDS
@@ -20,7 +20,7 @@ from printprep.stand.simulate import SECONDS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 MM = 1000.0  # of the longest side
 _CUBE = np.stack(np.meshgrid(*[[0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 SAMPLES = 10_000
 TAU = 0.05

@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from printprep import __version__
-from printprep.density.voxel_balance import tilt_deg
 from printprep.errors import OutputError
 from printprep.evaluate.bodies import body_of
 from printprep.evaluate.cases import Case
@@ -26,8 +24,10 @@ from printprep.evaluate.fidelity import Fidelity, fidelity
 from printprep.evaluate.methods import Method
 from printprep.evaluate.picture import Picture, Voxels, picture_of
 from printprep.files import write_atomically
+from printprep.generators.surface import surface_of
+from printprep.paper.voxel_balance import tilt_deg
 from printprep.stand.simulate import STANDS_BELOW_DEG
-from printprep.voxels.surface import surface_of
+from printprep.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from printprep.density.paper_settings import PaperSettings, Reach
 from printprep.errors import UsageError
+from printprep.paper.settings import PaperSettings, Reach
 
 Kind = Literal["solid", "shell", "paper", "lean", "lean-full-base", "lean-at-paper-tilt"]
 Solver = Literal["plane", "adam"]

@@ -21,16 +21,16 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.evaluate.touched import touched
-from printprep.mesh.columns import winding_in_columns
+from printprep.evaluate.voxelize_surface import voxelize_surface
 from printprep.mesh.measure import signed_volumes
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
+from printprep.mesh.winding_columns import winding_in_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 Voxels = Literal["surface", "centre"]
 
@@ -78,7 +78,7 @@ def picture_of(path: Path, up: str, resolution: int, voxels: Voxels = "surface")
     if voxels == "centre":
         return Picture(vertices, faces, inside, np.zeros_like(inside))
     shrunk = vertices * (1 - _WITHIN) + _JITTER
-    frozen = touched((shrunk[faces] + 0.5) * resolution, resolution)
+    frozen = voxelize_surface((shrunk[faces] + 0.5) * resolution, resolution)
     return Picture(vertices, faces, inside | frozen, frozen)
 
 

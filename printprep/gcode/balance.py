@@ -11,9 +11,7 @@ from printprep.gcode.printed import Balance
 from printprep.stand.contact import contact_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
 
 
 def balance_of(moments: Float, beads: Float, bed_mm: float) -> Balance:

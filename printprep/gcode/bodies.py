@@ -11,10 +11,9 @@ from printprep.mesh.measure import arrays, distance_to_mesh_mm, winding
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
+
 
 _NEAR_MM = 1.0  # a bead's axis lies within its body but for what layers and lines round off
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from printprep.gcode.state import Listener, numbers
+from printprep.gcode.modal_state import Listener, numbers
 
 DIAMETER_MM = 1.75
 DENSITY_G_CM3 = 1.24
@@ -27,14 +27,16 @@ class Filament:
     def __init__(
         self, listener: Listener, diameter_mm: float | None, density_g_cm3: float | None
     ) -> None:
-        said = listener.settings
-        self._volumetric = said.get("use_volumetric_e") == "1"
+        settings = listener.settings
+        self._volumetric = settings.get("use_volumetric_e") == "1"
         assumed = []
-        self._diameters = (diameter_mm,) if diameter_mm else numbers(said, "filament_diameter")
+        self._diameters = (diameter_mm,) if diameter_mm else numbers(settings, "filament_diameter")
         if not any(self._diameters):
             self._diameters = (DIAMETER_MM,)
             assumed.append(f"Filament of {DIAMETER_MM:g} mm is assumed; the file does not say.")
-        self._densities = (density_g_cm3,) if density_g_cm3 else numbers(said, "filament_density")
+        self._densities = (
+            (density_g_cm3,) if density_g_cm3 else numbers(settings, "filament_density")
+        )
         if not any(self._densities):
             self._densities = (DENSITY_G_CM3,)
             assumed.append(

@@ -9,9 +9,9 @@ import numpy as np
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
+
 
 _TILE = 256  # outlines united at a time: the work grows faster than their number
 SAME_LAYER_MM = 1e-3  # G-code has three decimals

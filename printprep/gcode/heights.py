@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.gcode.state import Listener, State, numbers
+from printprep.gcode.modal_state import Listener, State, numbers
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from printprep.arrays import Float
     from printprep.gcode.paths import Stretches
-
-    Float = NDArray[np.float64]
 
 
 class Heights:

@@ -11,11 +11,9 @@ from printprep.mesh.measure import arrays, distance_to_mesh_mm, winding
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
-    Bool = NDArray[np.bool_]
+    from printprep.arrays import Bool, Float, Int
+
 
 _STEP_MM = 0.5
 _SAMPLES_MAX = 4096  # of one stretch: finer than a millimetre on any bed

@@ -40,12 +40,12 @@ def measure_gcode(
     ------
     InputError : the file is missing, binary, malformed, or prints nothing.
     """
-    from printprep.gcode.state import Listener
-    from printprep.gcode.tally import Tally
+    from printprep.gcode.accumulate import Accumulator
+    from printprep.gcode.modal_state import Listener
 
     path = Path(path)
     listener = Listener()
-    tally = Tally(listener, path.name, cavities, bodies)
+    tally = Accumulator(listener, path.name, cavities, bodies)
     for piece in _pieces(path):
         tally.add(piece)
     return tally.result(left_out, diameter_mm, density_g_cm3)

@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Float, Int
 
-    Int = NDArray[np.int64]
-    Float = NDArray[np.float64]
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 COLUMNS = 1 + 3 + len(_PAIRS)

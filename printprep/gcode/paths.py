@@ -14,16 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.gcode.words import HOME, SET, E, I, J, R, Rows, X, Y, Z
+from printprep.gcode.lexer import HOME, SET, E, I, J, R, Rows, X, Y, Z
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Bool, Float, Int
+    from printprep.gcode.modal_state import State
 
-    from printprep.gcode.state import State
-
-    Int = NDArray[np.int64]
-    Float = NDArray[np.float64]
-    Bool = NDArray[np.bool_]
 
 _TURN_DEG = 5.0  # an arc becomes chords of at most this turn: sagitta 0.1 % of the radius
 

@@ -6,16 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
 
 
 @dataclass(frozen=True)
-class Said:
+class SlicerSummary:
     """What the slicer wrote into the file of itself and its settings; None where it did not.
 
     producer : name and version;  filament_mm3, filament_g : of all extruders, by its own count;
@@ -80,4 +76,4 @@ class Printed:
     support_in_cavities_mm3: float
     in_cavities_at_mm: tuple[float, float, float] | None
     assumed: tuple[str, ...]
-    said: Said
+    slicer_summary: SlicerSummary

@@ -13,18 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.infill.keys import walls_mm
+from printprep.output.prusa_keys import walls_mm
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from printprep.arrays import Float
     from printprep.density.program import Program
-    from printprep.profile_schema import Infill
+    from printprep.grid.depth import Depths
+    from printprep.profile_schema import InfillSettings
     from printprep.profiles import Profile
     from printprep.types import Solid
-    from printprep.voxel.depth import Depths
 
-    Float = NDArray[np.float64]
 
 # Fits to PrusaSlicer 2.5.0 at 15 % over eleven models (docs/infill.md).  The infill's figures hold
 # what it causes too: solid layers where a ceiling begins on it.
@@ -39,12 +37,12 @@ def shell_mm(profile: Profile) -> float:
     return SHELL_SHARE * float(np.mean(walls_mm(profile)))
 
 
-def sparse_share(infill: Infill) -> float:
+def sparse_share(infill: InfillSettings) -> float:
     """Share of the room inside that an even infill fills; lightning is none."""
     return GYROID_SHARE * infill.density if infill.pattern == "gyroid" else 0.0
 
 
-def hanging(ceiling: Float, infill: Infill) -> Float:
+def hanging(ceiling: Float, infill: InfillSettings) -> Float:
     """(4,) moments of the infill that hangs under ceilings, mm³ and mm⁴.
 
     ceiling : (4,) their area in plan, mm², and its first moments.
@@ -62,10 +60,10 @@ def infill_program(solid: Solid, depths: Depths, profile: Profile) -> Program:
     A voxel that is filled adds what dense infill weighs more than sparse.
     """
     from printprep.density.program import Program
-    from printprep.infill.room import room_of
+    from printprep.infill.moment_field import moment_field_of
 
     assert profile.infill is not None  # see :func:`printprep.infill.options.check_fill`
-    room = room_of(depths, shell_mm(profile))
+    room = moment_field_of(depths, shell_mm(profile))
     interior = room.interior(solid, depths)
     dense = replace(interior, moments=interior.moments * (1.0 - sparse_share(profile.infill)))
     program = Program(solid.manifold, dense, profile)

@@ -19,10 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
+
 
 # A shell's vertices are asked in which other shell they lie; so many, evenly spread over the list.
 _WITNESSES = 64

@@ -23,7 +23,7 @@ from printprep.mesh.shells import Candidate, Refusal, united
 from printprep.mesh.weld import edge_counts, weld
 
 if TYPE_CHECKING:
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 TIMEOUT_S = 120.0
 

@@ -17,10 +17,7 @@ from printprep.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
 
 
 def read_obj(data: bytes, what: str) -> tuple[Float, Int]:

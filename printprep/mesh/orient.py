@@ -14,10 +14,8 @@ from printprep.mesh.measure import signed_volumes, winding
 from printprep.mesh.weld import components, directed_edges, edge_counts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Float, Int
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
 
 # |V| / A^1.5 is 0.094 for a sphere.  An open piece below this is a sheet: it has no inside.
 _SHEET = 0.01

@@ -11,11 +11,9 @@ from printprep.errors import UsageError
 from printprep.types import Model
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from printprep.arrays import Float
     from printprep.mesh.read import RawMesh
 
-    Float = NDArray[np.float64]
 
 # Proper rotations (determinant +1) by quarter turns that take the named file axis to +z.  About x
 # for ±y, about y for ±x, half a turn about x for −z: the shortest turn in each case.

@@ -22,10 +22,8 @@ from printprep.mesh.stl import read_stl
 from printprep.mesh.weld import weld
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Float, Int
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
 
 SUFFIXES = (".stl", ".obj", ".ply", ".glb", ".gltf", ".3mf")
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}

@@ -18,15 +18,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.columns import winding_in_columns
 from printprep.mesh.measure import arrays
+from printprep.mesh.winding_columns import winding_in_columns
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
+
 
 _COLUMNS = 120**2
 _HEIGHTS = 8

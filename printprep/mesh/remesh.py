@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.columns import winding_in_columns
 from printprep.mesh.measure import (
     distance_to_mesh_mm,
     signed_volumes,
@@ -23,11 +22,12 @@ from printprep.mesh.measure import (
     try_manifold,
 )
 from printprep.mesh.shells import Candidate, Refusal
+from printprep.mesh.winding_columns import winding_in_columns
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Bool, Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 CELLS = 200  # along the longest side
 _BLOCK = 4  # cells along an edge of the coarse blocks that decide where to look closely

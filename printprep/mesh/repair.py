@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.mesh.columns import winding_at
 from printprep.mesh.measure import distance_mm
 from printprep.mesh.meshlab import mended
 from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
 from printprep.mesh.remesh import remeshed
 from printprep.mesh.shells import Candidate, Refusal, united
+from printprep.mesh.winding_columns import winding_at
 from printprep.types import Model, Repair, Rung, Solid
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 _SAMPLES = 10_000
 _SEED = 20140801

@@ -26,7 +26,7 @@ from printprep.mesh.weld import components
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 # A shell smaller than both is dust: a thousandth of a cubic millimetre is the volume of a cube a
 # tenth of a millimetre wide, under half the layer of any printer here.

@@ -19,9 +19,8 @@ import numpy as np
 from printprep.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from printprep.arrays import Float
 
-    Float = NDArray[np.float64]
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
-    Int = NDArray[np.int64]
+    from printprep.arrays import Float, Int
+
 
 # Must not begin with "solid": readers take that for ASCII.
 _STL_HEADER = b"printprep binary STL, unit mm, z up".ljust(80, b" ")

@@ -9,9 +9,9 @@ import numpy as np
 from printprep.mesh.weld import directed_edges
 
 if TYPE_CHECKING:
+    from printprep.arrays import Bool, Float, Int
     from printprep.overhang.limits import Acceptance
     from printprep.overhang.surface import Surface
-    from printprep.types import Bool, Float, Int
 
 # Slopes that were built to be t are no steeper; keels between such walls are a little: on a
 # funnel's polygon they lean so much more, and what sticks out is a corner of a few µm.

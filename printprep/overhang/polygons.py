@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from manifold3d import CrossSection
 
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 ARC_SEGMENTS = 16
 # Clipping moves corners by its own rounding; the same contour is still found again within this.

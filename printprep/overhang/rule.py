@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
     from manifold3d import CrossSection, Manifold
 
+    from printprep.arrays import Float
     from printprep.overhang.limits import Acceptance
-    from printprep.types import Float
 
 # Slices are simplified by this much: a hundredth of what decides.
 SIMPLIFY_MM = 0.002

@@ -11,7 +11,7 @@ import numpy as np
 from printprep.mesh.weld import directed_edges, opposite_edges
 
 if TYPE_CHECKING:
-    from printprep.types import Bool, Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 _EXACT = 1e-9
 

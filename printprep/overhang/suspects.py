@@ -41,8 +41,8 @@ from printprep.overhang.surface import Surface
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.arrays import Float
     from printprep.overhang.limits import Acceptance
-    from printprep.types import Float
 
 # Of off: slices are simplified, coordinates rounded, and polygons stand for round funnels.
 SLACK_MM = 0.005

@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 if TYPE_CHECKING:
-    from printprep.explore import Exploration
+    from printprep.pipeline.explore import Exploration
 
 WIDTH, HEIGHT = 720, 440
 LEFT, RIGHT, TOP, BOTTOM = 70, 24, 44, 56

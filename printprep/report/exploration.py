@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from printprep import __version__
 from printprep.report.json import number
+from printprep.version import __version__
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from printprep.explore import Exploration, Point
+    from printprep.pipeline.explore import Exploration, Point
 
 
 def exploration_json(found: Exploration, *, model: str) -> dict[str, Any]:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from printprep import __version__
-from printprep.report.balance import balance_json
+from printprep.stand.balance import balance_json
 from printprep.stand.lean import tilt_toward
+from printprep.version import __version__
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
+    from printprep.pipeline.simulate import TriedOut
     from printprep.profiles import Profile
-    from printprep.tryout import TriedOut
     from printprep.types import (
         Advice,
         Base,
@@ -62,25 +62,25 @@ def embedded_json(result: HollowResult) -> dict[str, Any]:
 
 
 def check_json(
-    subject: Subject, findings: Sequence[Finding], profile: Profile, *, model: str
+    context: CheckContext, findings: Sequence[Finding], profile: Profile, *, model: str
 ) -> dict[str, Any]:
     """What ``check`` found out about a file."""
-    volume_mm3 = float(subject.part.volume())
-    wall = subject.wall
+    volume_mm3 = float(context.part.volume())
+    wall = context.wall
     return {
         "printprep": __version__,
         "model": model,
         "profile": profile.name,
-        "size_mm": [number(side) for side in subject.size_mm],
+        "size_mm": [number(side) for side in context.size_mm],
         "volume_mm3": number(volume_mm3),
         "mass_g": number(volume_mm3 * profile.material.density_g_cm3 / 1000),
-        "tilt_deg": number(subject.stability.tilt_deg),
-        "lean_deg": number(subject.lean.angle_deg),
-        "lean_azimuth_deg": number(subject.lean.azimuth_deg),
+        "tilt_deg": number(context.stability.tilt_deg),
+        "lean_deg": number(context.lean.angle_deg),
+        "lean_azimuth_deg": number(context.lean.azimuth_deg),
         "wall_min_mm": None if wall is None else number(wall.value_mm),
-        "cavities": _cavities(subject.cavities),
+        "cavities": _cavities(context.cavities),
         "findings": [finding_json(item) for item in findings],
-        "repair": _repair(subject.repair),
+        "repair": _repair(context.repair),
     }
 
 
@@ -207,8 +207,11 @@ def _facts(result: HollowResult) -> dict[str, Any]:
         "drains": _drains(result.drainage),
         "infill": _infill(result.infill),
         "other_way": None
-        if result.other_way is None
-        else {"fill": result.other_way.fill, "mass_g": number(result.other_way.mass_g, 3)},
+        if result.alternative_fill is None
+        else {
+            "fill": result.alternative_fill.fill,
+            "mass_g": number(result.alternative_fill.mass_g, 3),
+        },
         "wall_min_mm": number(result.wall_min_mm),
         "cavities": _cavities(result.part.cavities),
         "base": _base(result.part.base, base_mass_g(result)),

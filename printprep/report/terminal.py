@@ -16,10 +16,10 @@ from printprep.stand.lean import tilt_toward
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.check.subject import Subject
+    from printprep.check.context import CheckContext
+    from printprep.pipeline.simulate import TriedOut
     from printprep.profiles import Profile
-    from printprep.tryout import TriedOut
-    from printprep.types import Drainage, Finding, HollowResult, Infill, OtherWay, Repair
+    from printprep.types import AlternativeFill, Drainage, Finding, HollowResult, Infill, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
@@ -58,8 +58,8 @@ def show_result(
     if result.drainage is not None and result.part.cavities:
         facts.add_row("drains", _drains(result.drainage))
     facts.add_row("base", _base(result))
-    if result.other_way is not None:
-        facts.add_row(*_other_way(result.other_way))
+    if result.alternative_fill is not None:
+        facts.add_row(*_other_way(result.alternative_fill))
     proof = _proof(result)
     if proof is not None:
         facts.add_row("proof", proof)
@@ -83,7 +83,7 @@ def show_result(
 
 def show_check(
     console: Console,
-    subject: Subject,
+    context: CheckContext,
     findings: Sequence[Finding],
     profile: Profile,
     *,
@@ -91,20 +91,20 @@ def show_check(
 ) -> None:
     """The summary of ``check``."""
     facts = _facts_table()
-    facts.add_row("size", " × ".join(f"{side:.4g}" for side in subject.size_mm) + " mm")
-    mass_g = subject.part.volume() * profile.material.density_g_cm3 / 1000
+    facts.add_row("size", " × ".join(f"{side:.4g}" for side in context.size_mm) + " mm")
+    mass_g = context.part.volume() * profile.material.density_g_cm3 / 1000
     facts.add_row("mass", f"{_mass(mass_g)} in {profile.material.name}")
-    tilt = _lean(tilt_toward(subject.stability, subject.lean))
-    facts.add_row("tips at", f"{tilt} (asked to stand {subject.lean})")
-    if subject.wall is not None:
+    tilt = _lean(tilt_toward(context.stability, context.lean))
+    facts.add_row("tips at", f"{tilt} (asked to stand {context.lean})")
+    if context.wall is not None:
         facts.add_row(
-            "thinnest wall", f"{subject.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
+            "thinnest wall", f"{context.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
         )
-    facts.add_row("cavities", _cavities(subject.cavities))
+    facts.add_row("cavities", _cavities(context.cavities))
     if verbose:
-        facts.add_row("contact", f"{subject.stability.contact_area_mm2:.4g} mm²")
-        facts.add_row("triangles", f"{subject.part.num_tri()}")
-    _add_repair(facts, subject.repair)
+        facts.add_row("contact", f"{context.stability.contact_area_mm2:.4g} mm²")
+        facts.add_row("triangles", f"{context.part.num_tri()}")
+    _add_repair(facts, context.repair)
     console.print(facts)
     show_findings(console, findings)
     if not findings:
@@ -203,7 +203,7 @@ def _infill(infill: Infill) -> str:
     return f"{walls}; ballast, printed dense, adds {_mass(infill.ballast_g)}"
 
 
-def _other_way(other: OtherWay) -> tuple[str, str]:
+def _other_way(other: AlternativeFill) -> tuple[str, str]:
     about = f"about {float(f'{other.mass_g:.2g}'):g} g"
     if other.fill == "infill":
         return "with infill", f"{about} (--fill infill)"

@@ -16,7 +16,7 @@ from printprep.stand.tilt_test import TIPS_ABOVE_DEG
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 # The bed takes so long to come close to the tilt angle, and goes on from there more slowly.
 _REST_S, _TILTING_S, _FALLING_S = 0.4, 2.4, 1.6

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
 
 
 # Toward the sides a directed lean does not go, a body must still stand upright; a thousandth of the

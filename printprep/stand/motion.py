@@ -9,7 +9,7 @@ import numpy as np
 from printprep.stand.scene import Scene, compiled
 
 if TYPE_CHECKING:
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 STEP_S = 0.001
 

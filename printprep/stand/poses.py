@@ -12,9 +12,9 @@ from printprep.stand.footing import Footing
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-    from numpy.typing import NDArray
 
-    Float = NDArray[np.float64]
+    from printprep.arrays import Float
+
 
 # Hull triangles whose normals differ by less than this bear together, and poses whose downs differ
 # by less are one: a hundredth of the lean anyone asks for.

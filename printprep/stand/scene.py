@@ -31,7 +31,7 @@ from printprep.stand.contact import contact_of, section_at_bed
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Float
+    from printprep.arrays import Float
 
 GRAVITY_MM_S2 = 9810.0
 # The bed tilts no further than this, and friction holds well beyond it.

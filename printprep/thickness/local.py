@@ -26,10 +26,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.tree import SurfaceTree
+from printprep.mesh.aabb_tree import SurfaceTree
 
 if TYPE_CHECKING:
-    from printprep.types import Bool, Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 TAPER_DEG = 60.0
 # Rays aslant, so many around the normal and so far from it, as a share of τ.
@@ -134,7 +134,7 @@ class _Look:
         Such balls are left as they were.
         """
         radius, going = balls.radius.copy(), which
-        touched = np.full(self.points.shape, np.nan)
+        voxelize_surface = np.full(self.points.shape, np.nan)
         blocked = np.zeros(len(radius), dtype=bool)
         for _ in range(_ROUNDS):
             centre = self.points[going] - radius[going, None] * self.normals[going]
@@ -145,11 +145,11 @@ class _Look:
             facing &= smaller < radius[going]
             blocked[going[~facing]] = True
             going = going[facing]
-            radius[going], touched[going] = smaller[facing], there[facing]
+            radius[going], voxelize_surface[going] = smaller[facing], there[facing]
             if len(going) == 0:
                 break
-        done = which[~blocked[which] & np.isfinite(touched[which, 0])]
-        balls.shrunk(done, radius[done], touched[done])
+        done = which[~blocked[which] & np.isfinite(voxelize_surface[which, 0])]
+        balls.shrunk(done, radius[done], voxelize_surface[done])
         return np.flatnonzero(blocked)
 
     def along(self, which: Int, ways: Float, balls: _Balls) -> Float:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.aabb_tree import SurfaceTree
 from printprep.mesh.measure import arrays
-from printprep.mesh.tree import SurfaceTree
 from printprep.thickness.local import LocalThickness, beside, local_thickness
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.types import Bool, Float
+    from printprep.arrays import Bool, Float
 
 # One point a square millimetre, within these numbers.
 _FEWEST, _MOST = 5_000, 60_000

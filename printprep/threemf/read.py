@@ -32,7 +32,7 @@ from printprep.threemf.parse import (
 from printprep.threemf.volumes import read_unprinted
 
 if TYPE_CHECKING:
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 ATTACHMENT = "Metadata/printprep.json"
 _ATTACHMENT_BYTES_MAX = 16 << 20

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 # Everything outside the Char production; tab and line ends too, which attributes turn to spaces.
 _FORBIDDEN = re.compile("[^\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -24,7 +24,7 @@ from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, p
 from printprep.threemf.text import clean, escape, triangle_lines, vertex_lines
 
 if TYPE_CHECKING:
-    from printprep.types import Float, Int
+    from printprep.arrays import Float, Int
 
 VolumeKind = Literal[
     "ModelPart", "NegativeVolume", "ParameterModifier", "SupportBlocker", "SupportEnforcer"

@@ -11,9 +11,9 @@ from manifold3d import Manifold
 
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import cavity_surface
+from printprep.grid.depth import measure_depths
 from printprep.mesh.measure import arrays, distance_mm
 from printprep.types import Plane
-from printprep.voxel.depth import measure_depths
 
 
 def room_in(manifold: Manifold, wall: float, feature: float = 1.0) -> Manifold:
@@ -31,32 +31,32 @@ def thinnest(outside: Manifold, cavity: Manifold) -> float:
 
 def test_the_room_in_a_cube_is_the_inner_cube() -> None:
     cube = solids.box(40, 40, 40)
-    room = room_in(cube, 2.0)
-    assert 0.99 * 36**3 < room.volume() < 36**3 * 1.0005
-    assert thinnest(cube, room) >= 2.0 - 0.04
-    assert np.allclose(room.bounding_box(), [-18, -18, 2, 18, 18, 38], atol=0.03)
+    hollowable_volume = room_in(cube, 2.0)
+    assert 0.99 * 36**3 < hollowable_volume.volume() < 36**3 * 1.0005
+    assert thinnest(cube, hollowable_volume) >= 2.0 - 0.04
+    assert np.allclose(hollowable_volume.bounding_box(), [-18, -18, 2, 18, 18, 38], atol=0.03)
 
 
 def test_the_room_in_a_ball_is_the_inner_ball() -> None:
     ball = solids.sphere(20)
-    room = room_in(ball, 2.0)
-    assert room.volume() == pytest.approx(4 / 3 * np.pi * 18**3, rel=4e-3)
-    assert thinnest(ball, room) >= 2.0 - 0.04
+    hollowable_volume = room_in(ball, 2.0)
+    assert hollowable_volume.volume() == pytest.approx(4 / 3 * np.pi * 18**3, rel=4e-3)
+    assert thinnest(ball, hollowable_volume) >= 2.0 - 0.04
 
 
 def test_reentrant_edges_keep_their_wall() -> None:
     # The groove's two edges point into the material: offset surfaces bulge toward chords there.
     block = solids.box(40, 40, 40) - solids.box(6, 60, 10).translate((0, 0, 30))
-    room = room_in(block, 1.2)
-    assert 1.2 - 0.04 <= thinnest(block, room) <= 1.2 + 0.03
+    hollowable_volume = room_in(block, 1.2)
+    assert 1.2 - 0.04 <= thinnest(block, hollowable_volume) <= 1.2 + 0.03
 
 
 def test_walls_are_measured_from_voids_the_model_already_has() -> None:
     void = solids.box(8, 8, 8).translate((0, 0, 16))
     cube = solids.box(40, 40, 40) - void
-    room = room_in(cube, 2.0)
-    assert thinnest(void, room) >= 2.0 - 0.04
-    part = make_part(solids.solid(cube), None, cavities_of(room, 1.0))
+    hollowable_volume = room_in(cube, 2.0)
+    assert thinnest(void, hollowable_volume) >= 2.0 - 0.04
+    part = make_part(solids.solid(cube), None, cavities_of(hollowable_volume, 1.0))
     # Two shells of the outside and two of the cavity, which surrounds the old void.
     assert len(part.manifold.decompose()) == 4
     assert len(part.cavities) == 1
@@ -71,20 +71,20 @@ def test_random_unions_keep_wall_and_manifold(seed: int) -> None:
         piece = solids.box(*rng.uniform(5, 18, 3)).rotate(tuple(rng.uniform(0, 90, 3)))
         solid = solid + piece.translate((*rng.uniform(-8, 8, 2), float(rng.uniform(0, 10))))
     solid = max(solid.decompose(), key=lambda piece: piece.volume())
-    room = room_in(solid, 1.2)
-    if room.is_empty():
+    hollowable_volume = room_in(solid, 1.2)
+    if hollowable_volume.is_empty():
         return
-    assert thinnest(solid, room) >= 1.2 - 0.04
-    part = make_part(solids.solid(solid), None, cavities_of(room, 1.0))
+    assert thinnest(solid, hollowable_volume) >= 1.2 - 0.04
+    part = make_part(solids.solid(solid), None, cavities_of(hollowable_volume, 1.0))
     removed = sum(cavity.volume() for cavity in part.cavities)
     assert part.manifold.volume() == pytest.approx(solid.volume() - removed, rel=1e-5)
 
 
 def test_a_cut_keeps_what_lies_above_the_plane() -> None:
-    room = solids.box(10, 10, 10)
-    upper = cut(room, [room], [Plane((0.0, 0.0, 1.0), 4.0)])
+    hollowable_volume = solids.box(10, 10, 10)
+    upper = cut(hollowable_volume, [hollowable_volume], [Plane((0.0, 0.0, 1.0), 4.0)])
     assert upper.volume() == pytest.approx(600)
-    assert cut(room, [room], [None]).volume() == pytest.approx(1000)
+    assert cut(hollowable_volume, [hollowable_volume], [None]).volume() == pytest.approx(1000)
 
 
 def test_each_body_has_its_own_plane() -> None:
@@ -106,8 +106,8 @@ def test_pieces_come_largest_first() -> None:
 
 def test_nothing_deep_enough_leaves_the_solid_as_it_is() -> None:
     plate = solids.box(40, 40, 2)
-    room = room_in(plate, 1.2)
-    assert room.is_empty()
-    part = make_part(solids.solid(plate), None, cavities_of(room, 1.2))
+    hollowable_volume = room_in(plate, 1.2)
+    assert hollowable_volume.is_empty()
+    part = make_part(solids.solid(plate), None, cavities_of(hollowable_volume, 1.2))
     assert part.cavities == ()
     assert part.manifold.volume() == pytest.approx(plate.volume())

@@ -11,7 +11,7 @@ import numpy as np
 from closed_form_parts import box, hollow_box
 from manifold3d import CrossSection, Manifold
 
-from printprep.check import run_rules, subject_of_solid
+from printprep.check import context_of_solid, run_rules
 from printprep.mesh.measure import arrays
 from printprep.mesh.repair import repair
 from printprep.profiles import Profile, load_profile
@@ -52,8 +52,8 @@ def found_in(case: Case) -> tuple[Finding, ...]:
     model = Model(vertices - middle, faces, np.eye(4), case.name)
     solid = repair(model)
     standing = stability(solid.manifold, profile.printer.first_layer_mm)
-    subject = subject_of_solid(solid.manifold, standing, Lean(10.0), solid.repair, model)
-    return run_rules(subject, profile)
+    context = context_of_solid(solid.manifold, standing, Lean(10.0), solid.repair, model)
+    return run_rules(context, profile)
 
 
 @cache

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_form_parts import box, hollow_box, roofed, subject
+from closed_form_parts import box, context, hollow_box, roofed
 from manifold3d import Manifold
 
 from printprep.check import rules, run_rules
@@ -16,7 +16,7 @@ from printprep.types import Finding, Repair, Stability
 
 
 def found(rule_id, part, profile, **changes):
-    return [item for item in run_rules(subject(part, **changes), profile) if item.rule == rule_id]
+    return [item for item in run_rules(context(part, **changes), profile) if item.rule == rule_id]
 
 
 def only(rule_id, part, profile, **changes):
@@ -25,7 +25,7 @@ def only(rule_id, part, profile, **changes):
 
 
 def test_a_sound_part_raises_nothing_but_information(fdm):
-    findings = run_rules(subject(roofed(30)), fdm)
+    findings = run_rules(context(roofed(30)), fdm)
     assert [(item.rule, item.severity) for item in findings] == [("sealed-cavity", "info")]
 
 
@@ -64,12 +64,12 @@ def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
 
 def test_an_id_is_given_out_once():
     with pytest.raises(ValueError, match="two rules are called tilt"):
-        rule("tilt")(lambda subject, profile: ())
+        rule("tilt")(lambda context, profile: ())
 
 
 def test_findings_come_worst_first_then_by_id(resin):
     floating = hollow_box(0.5, 0.1).translate((0, 0, 3))
-    findings = run_rules(subject(floating, hollowed=True, cavities=()), resin)
+    findings = run_rules(context(floating, hollowed=True, cavities=()), resin)
     keys = [({"error": 0, "warning": 1, "info": 2}[item.severity], item.rule) for item in findings]
     assert keys == sorted(keys)
     assert {"no-contact", "tiny-model", "sealed-cavity", "nothing-to-hollow"} == {
@@ -101,7 +101,7 @@ class TestWall:
         assert item.at_mm[2] == pytest.approx(0.35, abs=1e-5)
 
     def test_no_cavity_no_wall(self, fdm):
-        assert subject(box(20)).wall is None
+        assert context(box(20)).wall is None
         assert not found("wall-thickness", box(20), fdm)
 
     def test_two_edges_that_cross_are_nearer_than_any_vertex(self):
@@ -114,15 +114,15 @@ class TestWall:
             [(0, -30, 13), (-9, -30, 40), (9, -30, 40), (0, 30, 13), (-9, 30, 40), (9, 30, 40)]
         )
         outside = box(50, 30) - groove
-        assert subject(outside - ridge).wall.value_mm == pytest.approx(1.0, abs=1e-5)
+        assert context(outside - ridge).wall.value_mm == pytest.approx(1.0, abs=1e-5)
 
     def test_a_cavity_that_breaks_through_has_no_wall(self):
-        examined = replace(subject(box(20)), cavities=(box(10, z=15),))
+        examined = replace(context(box(20)), cavities=(box(10, z=15),))
         assert examined.wall.value_mm == 0.0
 
     def test_a_loose_piece_inside_is_no_outside(self):
         part = hollow_box(20, 2) + box(15.9, z=2.05)
-        examined = subject(part)
+        examined = context(part)
         assert examined.wall.value_mm == pytest.approx(2.0, abs=1e-5)
         assert sum(void.volume() for void in examined.cavities) == pytest.approx(
             16**3 - 15.9**3, rel=1e-5
@@ -132,7 +132,7 @@ class TestWall:
         ball = Manifold.sphere(20, 96).translate((0, 0, 20))
         part = ball - Manifold.sphere(18, 96).translate((0, 0, 20))
         # Same facets on both: planes at r·cos of half a facet, so 2 mm times a cosine near one.
-        assert 2 * 0.998 < subject(part).wall.value_mm <= 2.0
+        assert 2 * 0.998 < context(part).wall.value_mm <= 2.0
 
 
 class TestSealedCavity:
@@ -256,13 +256,13 @@ class TestWatertight:
         from printprep.mesh.measure import inverted
 
         standing = Stability(np.zeros((0, 2)), 0.0, (0, 0, 0), None, None, None)
-        examined = replace(subject(box(10)), part=inverted(box(10)), stability=standing)
+        examined = replace(context(box(10)), part=inverted(box(10)), stability=standing)
         (item,) = [item for item in run_rules(examined, fdm) if item.rule == "watertight"]
         assert item.value == pytest.approx(-1000)
 
     def test_edges_that_touch_are_counted_where_they_are(self, fdm):
         touching = box(10) + box(10).translate((10, 10, 0))
-        examined = replace(subject(box(10)), part=touching)
+        examined = replace(context(box(10)), part=touching)
         (item,) = [item for item in run_rules(examined, fdm) if item.rule == "watertight"]
         assert item.value == 2  # one edge, each way
         assert item.at_mm == pytest.approx((5, 5, 5))
@@ -272,5 +272,5 @@ class TestWatertight:
 
         open_sheet, status = try_manifold(np.eye(3), np.array([[0, 1, 2]]))
         assert status == "NotManifold"
-        (item,) = rules()["watertight"](replace(subject(box(10)), part=open_sheet), fdm)
+        (item,) = rules()["watertight"](replace(context(box(10)), part=open_sheet), fdm)
         assert "NotManifold" in item.message

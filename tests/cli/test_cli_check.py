@@ -10,7 +10,7 @@ from closed_form_parts import box, hollow_box, hollow_result
 
 from printprep.cli.run import run
 from printprep.mesh.write import to_bytes
-from printprep.report.export import write_part
+from printprep.output.part_file import write_part
 
 
 def write(folder: Path, part, name: str = "part.stl") -> str:

@@ -30,7 +30,7 @@ def handed(monkeypatch, tmp_path):
         seen.update(options, model=model)
         return hollow_result(profile=options["profile"], name=model.stem, drainage=seen["drainage"])
 
-    monkeypatch.setattr("printprep.pipeline.hollow", hollow)
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
     monkeypatch.chdir(tmp_path)
     return seen
 

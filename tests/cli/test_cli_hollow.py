@@ -27,7 +27,7 @@ def handed(monkeypatch, tmp_path):
         changes = {} if seen["findings"] is None else {"findings": seen["findings"]}
         return hollow_result(profile=options["profile"], name=model.stem, **changes)
 
-    monkeypatch.setattr("printprep.pipeline.hollow", hollow)
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
     monkeypatch.chdir(tmp_path)
     return seen
 

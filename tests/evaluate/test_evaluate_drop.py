@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from evaluate_models import voxel_box
 
-from printprep.density.voxel_balance import tilt_deg
 from printprep.evaluate.drop import final_rotation_deg, scene_of_voxels
+from printprep.paper.voxel_balance import tilt_deg
 
 SHAPE = (16, 16, 16)
 

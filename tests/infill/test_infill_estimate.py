@@ -10,6 +10,8 @@ from infill_parts import FOOT, SHEAR, TALL, leaning, solid_of, upright
 from manifold3d import Manifold
 
 from printprep.density.program import Program
+from printprep.grid.depth import Depths
+from printprep.infill.ballast import settle_estimated, stability_of_choice
 from printprep.infill.estimate import (
     GYROID_SHARE,
     LIGHTNING_BELOW_MM,
@@ -19,13 +21,11 @@ from printprep.infill.estimate import (
     shell_mm,
     sparse_share,
 )
-from printprep.infill.fill import measured_depths
-from printprep.infill.keys import layers, lines, object_keys, walls_mm
-from printprep.infill.room import room_of
-from printprep.infill.settle import settle_estimated, standing_of
+from printprep.infill.moment_field import moment_field_of
+from printprep.output.prusa_keys import layers, lines, object_keys, walls_mm
+from printprep.pipeline.infill import measured_depths
 from printprep.profiles import Profile, load_profile
 from printprep.types import Lean
-from printprep.voxel.depth import Depths
 
 
 def profile_with(**changes: object) -> Profile:
@@ -62,7 +62,7 @@ def depths_of(manifold: Manifold) -> Depths:
 @given(side=st.floats(12, 50), tall=st.floats(12, 50), level=st.floats(1.0, 1.3))
 def test_the_room_of_a_box_is_a_box_and_its_ceiling_the_top(side: float, tall: float, level: float):
     depths = depths_of(upright(side, tall))
-    room = room_of(depths, level)
+    room = moment_field_of(depths, level)
     x, y, z = 0.0, 0.0, tall / 2
     # A cell of the fine field across an edge of the room counts by distance: a hundredth of it
     volume = (side - 2 * level) ** 2 * (tall - 2 * level)
@@ -76,18 +76,18 @@ def test_the_room_of_a_box_is_a_box_and_its_ceiling_the_top(side: float, tall: f
 
 def test_every_ceiling_counts_and_slopes_count_in_plan():
     two = upright(20, 10) + upright(20, 10).translate((0, 0, 20))
-    ceiling = room_of(depths_of(two), 1.0).ceiling.sum(axis=(1, 2, 3))
+    ceiling = moment_field_of(depths_of(two), 1.0).ceiling.sum(axis=(1, 2, 3))
     assert ceiling[0] == pytest.approx(2 * 18**2, rel=0.01)
     assert ceiling[3] / ceiling[0] == pytest.approx((9 + 29) / 2, abs=0.05)
     ball = Manifold.sphere(15, 128).translate((0, 0, 15))
-    ceiling = room_of(depths_of(ball), 1.0).ceiling.sum(axis=(1, 2, 3))
+    ceiling = moment_field_of(depths_of(ball), 1.0).ceiling.sum(axis=(1, 2, 3))
     assert ceiling[0] == pytest.approx(np.pi * 14**2, rel=0.01)
     # The middle of a dome is two thirds up
     assert ceiling[3] / ceiling[0] == pytest.approx(15 + 14 * 2 / 3, abs=0.1)
 
 
 def test_a_model_thinner_than_its_walls_has_no_room():
-    room = room_of(depths_of(upright(20, 1.5)), 1.0)
+    room = moment_field_of(depths_of(upright(20, 1.5)), 1.0)
     assert not room.volume.any() and not room.ceiling.any()
 
 
@@ -133,7 +133,7 @@ def test_the_lightest_ballast_stands_as_asked_and_lies_below_a_plane(pattern: st
     choice = program.choose("never", lean)
     found = settle_estimated(solid_of(leaning()), program, choice, 0.15)
     assert choice.reached == np.inf
-    assert standing_of(program, choice).tilt_deg == pytest.approx(14.0, abs=1e-3)
+    assert stability_of_choice(program, choice).tilt_deg == pytest.approx(14.0, abs=1e-3)
     assert found.standing.tilt_deg == pytest.approx(14.0, abs=1e-3)
     assert found.moments[0] == pytest.approx(program.unfilled(None)[0, 0] + found.ballast_mm3)
     (ballast,) = found.ballast

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from printprep.errors import UsageError
 from printprep.mesh.measure import arrays, mass_properties
-from printprep.pipeline import hollow
+from printprep.pipeline.hollow import hollow
 from printprep.types import HollowResult
 
 WALL = 1.2

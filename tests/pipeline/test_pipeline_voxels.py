@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from printprep.errors import InputError
-from printprep.pipeline import hollow
-from printprep.voxels.model import read_model
+from printprep.generators.model import read_model
+from printprep.pipeline.hollow import hollow
 
 
 def surface_voxels(side: int) -> np.ndarray:

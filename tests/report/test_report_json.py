@@ -6,7 +6,7 @@ import json
 import math
 
 import pytest
-from closed_form_parts import hollow_box, hollow_result, subject
+from closed_form_parts import context, hollow_box, hollow_result
 
 from printprep.check import run_rules
 from printprep.profiles import load_profile
@@ -102,7 +102,7 @@ def test_repair_is_told_in_full():
 
 def test_check_tells_size_mass_and_wall():
     profile = load_profile("fdm-pla-0.4")
-    examined = subject(hollow_box(20, 2))
+    examined = context(hollow_box(20, 2))
     data = check_json(examined, run_rules(examined, profile), profile, model="x.stl")
     assert data["size_mm"] == [20.0, 20.0, 20.0]
     assert (data["volume_mm3"], data["mass_g"], data["wall_min_mm"]) == (3904.0, 4.84096, 2.0)

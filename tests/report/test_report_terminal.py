@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_form_parts import box, hollow_box, hollow_result, subject
+from closed_form_parts import box, context, hollow_box, hollow_result
 from rich.console import Console
 
 from printprep.check import run_rules
@@ -127,7 +127,7 @@ def test_advice_is_for_fdm_and_for_a_3mf():
 )
 def test_check_summary(part, words):
     profile = load_profile("fdm-pla-0.4")
-    examined = subject(part(20, 2))
+    examined = context(part(20, 2))
     stream = io.StringIO()
     show_check(
         Console(file=stream, width=80),

@@ -38,7 +38,7 @@ def printed_by_cura(engine: Path, result: HollowResult, folder: Path, **changes:
 def test_a_block_prints_hollow(cura_engine: Path, tmp_path: Path, union: str):
     result = hollow_block()
     printed = printed_by_cura(cura_engine, result, tmp_path, meshfix_union_all=union)
-    assert printed.said.producer == "Cura_SteamEngine 4.13.0"
+    assert printed.slicer_summary.producer == "Cura_SteamEngine 4.13.0"
     assert printed.mass_g == pytest.approx(result.mass_g, rel=0.04)
     assert printed.in_cavities_mm3 == 0.0
     x, y, _ = result.profile.printer.bed_mm

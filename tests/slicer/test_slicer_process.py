@@ -15,8 +15,8 @@ import pytest
 from printprep.errors import InputError, OutputError, ToolError, UsageError
 from printprep.profiles import load_profile
 from printprep.slicer.child import INSTALL_HINT
-from printprep.slicer.export import profile_ini
 from printprep.slicer.process import Slicer, find_slicer
+from printprep.slicer.prusa_ini import profile_ini
 from printprep.slicer.sanitize import settings_ini, without_commands
 
 FACETS = [

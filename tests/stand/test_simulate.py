@@ -217,7 +217,7 @@ def test_findings_say_what_a_simulation_found() -> None:
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", ["spot_low_resolution", "penguin"])
 def test_a_hollowed_figure_stands_at_the_lean(dev_models, name: str) -> None:
-    from printprep.pipeline import hollow
+    from printprep.pipeline.hollow import hollow
 
     model = dev_models[name]
     result = hollow(model.path, up=model.up, size_mm=60)

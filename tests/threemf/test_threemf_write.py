@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from threemf_shapes import BOX_FACES, box, hollow_box, judge_strictly, volume
 
 from printprep.errors import UsageError
-from printprep.report.thumbnail import thumbnail_png
+from printprep.render.thumbnail import thumbnail_png
 from printprep.slicer.process import find_slicer
 from printprep.threemf.read import read_3mf
 from printprep.threemf.text import clean, vertex_lines

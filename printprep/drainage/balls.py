@@ -1,0 +1,104 @@
+"""Where the centre of a ball can be in a void: the places that a hole of its width can drain.
+
+Clearance is the distance to the void's surface.  It is exact where it decides, near the ball's
+radius, so a ball at rest is found to a few hundredths of a millimetre between two cells of its
+column.  Between columns it is not looked for: a neck hardly wider than the ball counts as closed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.drainage.space import Dexels
+from printprep.grid.grid import block_around, points_mm
+
+if TYPE_CHECKING:
+    from printprep.arrays import Float, Int
+    from printprep.drainage.space import Space
+    from printprep.grid.distance import Surface
+
+# Clearance on the grid alone is right to this many cells; nearer the radius it is measured.
+UNSURE_CELLS = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Balls:
+    """The centres of balls of a radius that fit, as dexels over the grid's columns.
+
+    volume_mm3 : (n,) of the void nearest to each dexel, which drains with it.
+    nearest : (k,) for every void cell, in C order, the dexel nearest to it;  −1 without any.
+    body : (n,) which connected part of the void each dexel lies in.
+    """
+
+    radius_mm: float
+    dexels: Dexels
+    volume_mm3: Float
+    nearest: Int
+    body: Int
+
+
+def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
+    """The balls of a radius that fit in a part's void, whose surface is given."""
+    from scipy.ndimage import distance_transform_edt, generate_binary_structure, label
+
+    grid, void = space.grid, space.void
+    nothing = np.zeros(0, dtype=np.int64)
+    if not void.any():
+        dexels = Dexels(nothing, np.zeros(0), np.zeros(0))
+        return Balls(radius_mm, dexels, np.zeros(0), nothing, nothing)
+    block = block_around(void, 1)
+    inside = void[block]
+    clearance = (np.asarray(distance_transform_edt(inside), float) - 0.5) * grid.pitch_mm
+    unsure = inside & (np.abs(clearance - radius_mm) < UNSURE_CELLS * grid.pitch_mm)
+    at = np.stack(np.nonzero(unsure), axis=1) + [axis.start for axis in block]
+    index = np.ravel_multi_index(tuple(at.T), grid.shape)
+    clearance[unsure] = surface.distance_mm(points_mm(grid, index))
+    fits = inside & (clearance >= radius_mm)
+    number, dexels = _runs(space, block, clearance, fits, radius_mm)
+    count = len(dexels.column)
+    if not count:
+        every = np.full(int(void.sum()), -1, dtype=np.int64)
+        return Balls(radius_mm, dexels, np.zeros(0), every, nothing)
+    where = distance_transform_edt(~fits, return_distances=False, return_indices=True)
+    nearest = number[tuple(where)][inside].astype(np.int64)
+    piece, _ = label(inside, structure=generate_binary_structure(3, 3))
+    # A void that holds no ball is nobody's
+    body = np.zeros(count, dtype=np.int64)
+    body[number[fits]] = piece[fits]
+    nearest = np.where(body[nearest] == piece[inside], nearest, -1)
+    cells = np.bincount(nearest[nearest >= 0], minlength=count)
+    volume: Float = cells.astype(float) * grid.pitch_mm**3
+    return Balls(radius_mm, dexels, volume, nearest, body)
+
+
+def _runs(
+    space: Space,
+    block: tuple[slice, slice, slice],
+    clearance: Float,
+    fits: np.ndarray,
+    radius_mm: float,
+) -> tuple[Int, Dexels]:
+    """Runs of cells of a column that fit, numbered; their ends lie between cells."""
+    grid = space.grid
+    pitch = grid.pitch_mm
+    before = np.zeros_like(fits)
+    before[:, :, 1:] = fits[:, :, :-1]
+    after = np.zeros_like(fits)
+    after[:, :, :-1] = fits[:, :, 1:]
+    starts, ends = fits & ~before, fits & ~after
+    number = (np.cumsum(starts).reshape(fits.shape) - 1).astype(np.int64)
+    i, j, low = np.nonzero(starts)
+    _, _, high = np.nonzero(ends)
+
+    def end(k: Int, way: int) -> Float:
+        here, there = clearance[i, j, k], clearance[i, j, k + way]
+        share = (here - radius_mm) / np.maximum(here - there, 1e-9)
+        z = grid.origin_mm[2] + pitch * (k + block[2].start)
+        result: Float = z + way * pitch * np.clip(share, 0.0, 1.0)
+        return result
+
+    column = (i + block[0].start) * grid.shape[1] + j + block[1].start
+    return number, Dexels(column, end(low, -1), end(high, 1))

@@ -1,0 +1,107 @@
+"""Drains in a part: what ``hollow`` asks for, from one solve to the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from printprep.drainage.channel import bored
+from printprep.drainage.place import Drained, Hole, drained
+from printprep.drainage.space import around
+from printprep.mesh.quantize import quantized
+from printprep.types import Drain, Drainage, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float
+    from printprep.drainage.space import Space
+    from printprep.profiles import Profile
+    from printprep.types import Base
+
+
+class Drainer:
+    """Drains one part after another of the same solid, and keeps the holes that still serve.
+
+    bores : what the holes of the last part take, as solids;  filled : what was filled in it.
+    """
+
+    def __init__(self, profile: Profile) -> None:
+        from manifold3d import Manifold
+
+        assert profile.drain.diameter_mm is not None
+        self.diameter_mm = profile.drain.diameter_mm
+        self.profile = profile
+        self.bores = Manifold()
+        self.filled = Manifold()
+        self._holes: tuple[Hole, ...] = ()
+        self._space: tuple[Base | None, Space] | None = None
+
+    @property
+    def taken_mm3(self) -> float:
+        """What holes and filling change of the part."""
+        return float(self.bores.volume() + self.filled.volume())
+
+    def drain(self, part: Part) -> tuple[Part, Drainage]:
+        """The part with its cavities drained."""
+        from manifold3d import Manifold, OpType
+
+        found = drained(
+            part.outside,
+            part.cavities,
+            diameter_mm=self.diameter_mm,
+            count_of=self.profile.drain.holes_of,
+            wall_mm=self.profile.wall_mm,
+            min_feature_mm=self.profile.min_feature_mm,
+            known=self._holes,
+            space=self._around(part),
+        )
+        self._holes = found.holes
+        self.bores = _united([bored(hole.channel) for hole in found.holes])
+        self.filled = _united(part.cavities) - _united(found.cavities)
+        whole = Manifold.batch_boolean([part.outside, *found.cavities, self.bores], OpType.Subtract)
+        return (
+            Part(
+                quantized(whole),
+                part.outside,
+                found.cavities,
+                part.base,
+                part.name,
+                part.placement,
+            ),
+            _drainage(found),
+        )
+
+    def _around(self, part: Part) -> Space:
+        """The outside on a grid: it changes only with the base."""
+        if self._space is None or self._space[0] is not part.base:
+            self._space = part.base, around(part.outside, self.diameter_mm)
+        return self._space[1]
+
+
+def _united(solids: Sequence[Manifold]) -> Manifold:
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(list(solids), OpType.Add) if solids else Manifold()
+
+
+def _drainage(found: Drained) -> Drainage:
+    return Drainage(tuple(map(_drain, found.holes)), found.filled_mm3, found.closed_mm3)
+
+
+def _drain(hole: Hole) -> Drain:
+    channel = hole.channel
+    return Drain(
+        role=hole.role,
+        cavity=hole.cavity,
+        centre_mm=_place(channel.centre_mm),
+        axis=_place(channel.axis),
+        diameter_mm=channel.diameter_mm,
+        length_mm=channel.length_mm,
+    )
+
+
+def _place(point: Float) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in point)
+    return x, y, z

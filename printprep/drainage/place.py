@@ -1,0 +1,294 @@
+"""Drain a part: outlets where liquid would stand, vents where air has to come in, and the rest
+filled.
+
+Upright on its plate, as it is printed.  Every pool that holds enough gets an outlet at its lowest
+place that the hole's own ball reaches; what no outlet drains is filled, with floors that fall
+toward an outlet.  So no layer closes off a region from the air: nothing is trapped, and nothing
+sucks at the vat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.cavity.carve import cavities_of
+from printprep.drainage.balls import balls_in
+from printprep.drainage.channel import Channel, bored
+from printprep.drainage.fill import filling
+from printprep.drainage.pools import Pools
+from printprep.drainage.probe import channel_along
+from printprep.drainage.residual_pools import residual_pools
+from printprep.drainage.search import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
+from printprep.drainage.space import Space, around, hollowed
+from printprep.grid.distance import Surface
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float, Int
+    from printprep.drainage.search import Candidate, Role
+
+# A pool that holds less than this, or than this share of all cavities, is filled: a hole would cost
+# more looks than it saves.
+LEAST_POOL_MM3 = 250.0
+LEAST_POOL = 0.005
+# What stands no higher than this counts for nothing there.
+FILM_MM = 0.3
+# An outlet that frees less than this share of its pool is not worth drilling.
+LEAST_FREED = 0.5
+# How far above its lowest place an outlet of a pool may begin: tried one after the other.
+BANDS_MM = (4.0, 12.0, 30.0)
+# Ways tried exactly before a pool counts as out of a hole's reach.
+MOST_TRIED = 25
+# Two mouths are this many diameters apart at least.
+APART = 2.5
+# A hole is kept where its ball still fits but for this.
+FITS_MM = 0.1
+# What is this share of a hole's width lets pass what leaves through it: else low rooms, where a
+# ball has no way to rise, would fall apart into pools of their own.
+PASSES = 0.9
+# Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
+RUNS = 0.4
+# Drops are followed on columns of this share of the grid's pitch.
+FINE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Hole:
+    """A channel and what it is for;  cavity : index of the cavity it opens."""
+
+    role: Role
+    channel: Channel
+    cavity: int
+
+
+@dataclass(frozen=True, eq=False)
+class Drained:
+    """Cavities with what cannot drain filled, and the holes that open them.
+
+    cavities : positive solids, largest first;  holes : outlets first, cavity by cavity.
+    filled_mm3 : what was filled of the cavities that are left.
+    closed_mm3 : volumes of the cavities that no hole of this size opens, filled whole.
+    """
+
+    cavities: tuple[Manifold, ...]
+    holes: tuple[Hole, ...]
+    filled_mm3: float
+    closed_mm3: tuple[float, ...]
+
+
+def drained(
+    outside: Manifold,
+    cavities: Sequence[Manifold],
+    *,
+    diameter_mm: float,
+    count_of: Callable[[float], int],
+    wall_mm: float,
+    min_feature_mm: float,
+    known: Sequence[Hole] = (),
+    space: Space | None = None,
+) -> Drained:
+    """Drain the cavities of a part.
+
+    Parameters
+    ----------
+    outside : the part without its cavities, on the plate.
+    diameter_mm : of the holes;  count_of : holes for a cavity of so many mm³, at least.  With two
+        and more one of them at least is a vent; pools get outlets of their own.
+    known : holes of a part like this one, kept where they still fit.
+    space : the outside on a grid, where it is at hand (:func:`printprep.drainage.space.around`).
+    """
+    from manifold3d import Manifold, OpType
+
+    if not cavities:
+        return Drained((), (), 0.0, ())
+    void = Manifold.batch_boolean(list(cavities), OpType.Add)
+    space = around(outside, diameter_mm) if space is None else space
+    driller = Driller(hollowed(space, void), outside, void, diameter_mm, wall_mm)
+    driller.keep(known)
+    driller.drill_outlets()
+    driller.drill_vents(count_of)
+    return _assigned(driller.drilled, cavities_of(driller.left_of(void), min_feature_mm), cavities)
+
+
+class Driller:
+    """Finds one hole after another in a part; ``drilled`` are those found so far."""
+
+    def __init__(
+        self,
+        space: Space,
+        outside: Manifold,
+        void: Manifold,
+        diameter_mm: float,
+        wall_mm: float,
+    ) -> None:
+        self.diameter_mm = diameter_mm
+        self.radius_mm = diameter_mm / 2
+        self.wall_mm = wall_mm
+        self.clearance_mm = wall_mm / 2
+        self.space = space
+        self.outside = Surface.of(outside)
+        self.void = Surface.of(void)
+        self.rests = Pools(balls_in(space, self.void, self.radius_mm), space.grid)
+        self.pools = Pools(balls_in(space, self.void, PASSES * self.radius_mm), space.grid)
+        self._pool_of_rest = self.pools.holding(self.rests.dexels)
+        self.drilled: list[tuple[Role, Channel]] = []
+
+    def keep(self, holes: Sequence[Hole]) -> None:
+        """Take over holes whose inner ball still fits in the void."""
+        for hole in holes:
+            clearance = self.void.depth_mm(hole.channel.inner_mm[None])[0]
+            if clearance >= self.radius_mm - FITS_MM and len(self.pools.over(hole.channel)):
+                self.drilled.append((hole.role, hole.channel))
+
+    def drill_outlets(self) -> None:
+        """An outlet for every pool that is worth one, the largest first."""
+        beyond_reach = np.zeros(0, dtype=np.int64)
+        while True:
+            outlets = self.pools.outlets(self._channels("outlet"))
+            levels = self.pools.levels(outlets, slope=0.0)
+            film = np.where(np.isfinite(levels), FILM_MM, 0.0)
+            standing = np.maximum(self.pools.standing_mm(levels) - film, 0.0)
+            pool, volume_mm3 = self.pools.largest(standing, beyond_reach)
+            if volume_mm3 < max(LEAST_POOL_MM3, LEAST_POOL * float(self.pools.volume_mm3.sum())):
+                return
+            channel = self._outlet_of(pool, volume_mm3)
+            if channel is None:
+                beyond_reach = np.concatenate([beyond_reach, pool])
+            else:
+                self.drilled.append(("outlet", channel))
+
+    def drill_vents(self, count_of: Callable[[float], int]) -> None:
+        """A vent for every cavity with an outlet, and more up to its count of holes."""
+        reached = np.isfinite(self.pools.levels(self.pools.outlets(self._channels("outlet"))))
+        bodies = [
+            (role, int(self.pools.balls.body[self.pools.over(channel)[0]]))
+            for role, channel in self.drilled
+        ]
+        for body in sorted({body for role, body in bodies if role == "outlet"}):
+            outlets, vents = (bodies.count((role, body)) for role in ("outlet", "vent"))
+            count = count_of(float(self.pools.volume_mm3[self.pools.balls.body == body].sum()))
+            for _ in range(max(count - outlets, min(count - 1, 1)) - vents):
+                channel = self._vent_of(np.flatnonzero(reached & (self.pools.balls.body == body)))
+                if channel is None:
+                    break
+                self.drilled.append(("vent", channel))
+
+    def left_of(self, void: Manifold) -> Manifold:
+        """The void without what does not drain: filled where balls stay, then where drops do."""
+        channels = self._channels("outlet")
+        runs = balls_in(self.space, self.void, RUNS * self.radius_mm)
+        tops = np.maximum(
+            self.pools.tops_mm(channels), Pools(runs, self.space.grid).tops_mm(channels)
+        )
+        left = void - filling(self.space, tops)
+        return left - residual_pools(left, channels, FINE * self.space.grid.pitch_mm)
+
+    def _channels(self, role: Role) -> list[Channel]:
+        return [channel for other, channel in self.drilled if other == role]
+
+    def _outlet_of(self, pool: Int, volume_mm3: float) -> Channel | None:
+        """The best outlet of a pool, from farther up where none begins lower."""
+        rests = self._rests_in(pool)
+        spare_mm = self.radius_mm - self.pools.balls.radius_mm
+        for band_mm in self._bands(rests):
+            balls = balls_at_rest(self.rests, rests, band_mm)
+            below = self.pools.held_below_mm3(pool, balls[:, 2] - spare_mm)
+            worth = volume_mm3 - below >= LEAST_FREED * volume_mm3
+            ways = self._ways(balls[worth], FILLED_MM * below[worth], "outlet")
+            channel = self._first_clean(ways)
+            if channel is not None:
+                return channel
+        return None
+
+    def _rests_in(self, pool: Int) -> Int:
+        """Where in a pool a ball of the hole's full width can be."""
+        return np.flatnonzero(np.isin(self._pool_of_rest, pool))
+
+    def _bands(self, rests: Int) -> list[tuple[float, float]]:
+        """Bands of height to look for balls at rest in, one on the other, that hold them all.
+
+        A band leaves out the ones before it: where those gave no hole, their places are the
+        cheapest still, and would be tried again.
+        """
+        if not len(rests):
+            return []
+        dexels = self.rests.dexels
+        high = float(np.ptp([dexels.low_mm[rests].min(), dexels.high_mm[rests].max()]))
+        return list(pairwise((0.0, *(band for band in BANDS_MM if band < high), high)))
+
+    def _vent_of(self, cavity: Int) -> Channel | None:
+        """The best vent of a cavity, from farther down where none begins higher."""
+        top = float(self.pools.dexels.high_mm[cavity].max())
+        rests = self._rests_in(cavity)
+        mouths = np.array([channel.centre_mm for _, channel in self.drilled])
+        bands = self._bands(rests)
+        for band_mm in [(0.0, bands[-2][1]), bands[-1]] if len(bands) > 1 else bands:
+            balls = balls_at_rest(self.rests, rests, band_mm, top=True)
+            away = np.linalg.norm(balls[:, None] - mouths, axis=2).min(axis=1)
+            extra = DEPTH_MM * (top - balls[:, 2]) - AWAY_MM * away
+            channel = self._first_clean(self._ways(balls, extra, "vent"))
+            if channel is not None:
+                return channel
+        return None
+
+    def _ways(self, balls: Float, extra_mm: Float, role: Role) -> tuple[Candidate, ...]:
+        return ways_out(
+            self.space, balls, extra_mm, self.radius_mm, self.wall_mm, self.clearance_mm, role
+        )
+
+    def _first_clean(self, ways: Sequence[Candidate]) -> Channel | None:
+        """The cheapest way that is clean by exact measure, apart from the holes there are."""
+        failed: list[Candidate] = []
+        for way in ways:
+            if len(failed) == MOST_TRIED:
+                break
+            if not self._apart(way.mouth_mm) or any(way.like(other) for other in failed):
+                continue
+            channel = channel_along(
+                way, self.outside, self.void, self.diameter_mm, self.wall_mm, self.clearance_mm
+            )
+            if channel is not None and self._apart(channel.centre_mm):
+                return channel
+            failed.append(way)
+        return None
+
+    def _apart(self, mouth_mm: Float) -> bool:
+        least = APART * self.diameter_mm
+        return all(
+            float(np.linalg.norm(mouth_mm - other.centre_mm)) >= least for _, other in self.drilled
+        )
+
+
+def _assigned(
+    drilled: Sequence[tuple[Role, Channel]],
+    pieces: Sequence[Manifold],
+    before: Sequence[Manifold],
+) -> Drained:
+    """The pieces that a hole opens, with their holes."""
+    solids = [bored(channel) for _, channel in drilled]
+    kept: list[Manifold] = []
+    holes: list[Hole] = []
+    used: set[int] = set()
+    for piece in pieces:
+        opening = [
+            k for k, solid in enumerate(solids) if k not in used and (solid ^ piece).volume() > 0
+        ]
+        if not any(drilled[k][0] == "outlet" for k in opening):
+            continue
+        used.update(opening)
+        holes += [Hole(*drilled[k], len(kept)) for k in opening]
+        kept.append(piece)
+    closed = [
+        float(cavity.volume())
+        for cavity in before
+        if not any((cavity ^ piece).volume() > 0 for piece in kept)
+    ]
+    total = sum(cavity.volume() for cavity in before)
+    filled = total - sum(closed) - sum(piece.volume() for piece in kept)
+    return Drained(tuple(kept), tuple(holes), float(filled), tuple(closed))

@@ -1,0 +1,125 @@
+"""What layers still hold shut of cavities whose pools are filled: dents and tips of any size.
+
+Balls tell where a hole is wanted and what a hole can drain.  Their fillings meet in steps, and
+leave dents between them that no ball of theirs knows of.  So the floor that is left is flooded once
+more, as drops run: on columns twice as fine and to the exact heights of its surface.  Drops run
+between columns that touch by a side, as pixels of a layer do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.cavity.surface import isosurface
+from printprep.drainage.balls import Balls
+from printprep.drainage.pools import LEAST_MM, SLOPE, Pools
+from printprep.drainage.space import Dexels, dexels_of
+from printprep.grid.distance import DepthField
+from printprep.grid.grid import cropped
+from printprep.types import Grid
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from printprep.arrays import Bool, Float, Int
+    from printprep.drainage.channel import Channel
+
+# A dent less deep than this is a film.
+FILM_MM = 0.03
+# Nothing runs where the ceiling is no higher than this above the floor: such cracks stay where one
+# filling ends below another.
+CRACK_MM = 0.3
+# Half of what floors fall by already: drops run by sides, up to √2 as far, and refill no floor.
+FALL = SLOPE / 2
+# Cells that a filling reaches beyond its own, into the wall around, and room for it in a grid.
+INTO_WALL = 2.5
+MARGIN = 4
+# Beside its own cells a filling lies this much of a cell below the floor, so as to take none of it.
+UNDER_FLOOR = 0.25
+
+
+def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float) -> Manifold:
+    """The solid that fills what does not run out of a void to these outlets; it reaches into walls.
+
+    pitch_mm : of the columns it looks at.
+    """
+    from manifold3d import Manifold, OpType
+
+    if void.is_empty():
+        return Manifold()
+    grid = _grid_over(void, pitch_mm)
+    dexels = dexels_of(void, grid)
+    nothing = np.zeros(len(dexels.column))
+    hollowable_volume = Dexels(dexels.column, dexels.low_mm, dexels.high_mm - CRACK_MM)
+    drops = Balls(
+        0.0, hollowable_volume, nothing, nothing.astype(np.int64), nothing.astype(np.int64)
+    )
+    pools = Pools(drops, grid, diagonal=False)
+    levels = pools.levels(pools.outlets(channels), FALL)
+    standing = levels - dexels.low_mm
+    label = pools.connected(standing > LEAST_MM)
+    deep = np.unique(label[standing > FILM_MM])
+    floor = Floor(grid, dexels, np.where(label >= 0, levels, -np.inf))
+    return Manifold.batch_boolean(
+        [Manifold(), *(floor.filled(np.flatnonzero(label == dent)) for dent in deep)], OpType.Add
+    )
+
+
+class Floor:
+    """The floor of a void as heights over columns, with levels up to which it is to be raised.
+
+    level_mm : (n,) mm, for each dexel, −inf where its floor is left;  top_mm : (n,) mm, the same,
+        just below the floor where that is left.
+    """
+
+    def __init__(self, grid: Grid, dexels: Dexels, level_mm: Float) -> None:
+        self.grid = grid
+        self.dexels = dexels
+        dry = dexels.low_mm - UNDER_FLOOR * grid.pitch_mm
+        self.top_mm = np.where(np.isfinite(level_mm) | (level_mm > 0), level_mm, dry)
+        self._dexel = np.full(grid.shape, -1, dtype=np.int32)
+        cell, dexel = self._cells(np.arange(len(dexels.column)))
+        self._dexel.reshape(-1)[cell] = dexel
+
+    def filled(self, dent: Int) -> Manifold:
+        """The solid that raises the floor in the dexels numbered ``dent`` (k,), and meets it all
+        around."""
+        from scipy.ndimage import distance_transform_edt
+
+        at = np.column_stack(np.unravel_index(self._cells(dent)[0], self.grid.shape))
+        # The grid's own margin is as wide: the block stays within it.
+        start, stop = at.min(axis=0) - MARGIN, at.max(axis=0) + MARGIN + 1
+        i, j, k = map(slice, start, stop)
+        block = (i, j, k)
+        grid, pitch = cropped(self.grid, block), self.grid.pitch_mm
+        cells = np.zeros(grid.shape, dtype=bool)
+        cells[tuple((at - start).T)] = True
+        dexel = self._dexel[block]
+        void: Bool = dexel >= 0
+        nearest = distance_transform_edt(~void, return_distances=False, return_indices=True)
+        top = self.top_mm[dexel[tuple(nearest)]]
+        z = grid.origin_mm[2] + pitch * np.arange(grid.shape[2])
+        field = np.clip(top - z, -2 * pitch, 2 * pitch)
+        field = np.minimum(field, (INTO_WALL - distance_transform_edt(~cells)) * pitch)
+        return isosurface(DepthField(grid, field.astype(np.float32)), 0.0)
+
+    def _cells(self, of: Int) -> tuple[Int, Int]:
+        """Cells, flat, whose centres lie in these dexels, and whose they are; one each at least."""
+        low, pitch = self.grid.origin_mm[2], self.grid.pitch_mm
+        first = np.ceil((self.dexels.low_mm[of] - low) / pitch).astype(np.int64)
+        last = np.floor((self.dexels.high_mm[of] - low) / pitch).astype(np.int64)
+        count = np.maximum(last - first + 1, 1)
+        step = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+        cell = np.repeat(self.dexels.column[of] * self.grid.shape[2] + first, count) + step
+        return cell, np.repeat(of, count)
+
+
+def _grid_over(void: Manifold, pitch_mm: float) -> Grid:
+    box = np.array(void.bounding_box())
+    low = box[:3] - MARGIN * pitch_mm
+    counts = np.ceil((box[3:] - box[:3]) / pitch_mm).astype(int) + 2 * MARGIN + 1
+    return Grid(low, pitch_mm, (int(counts[0]), int(counts[1]), int(counts[2])))

@@ -1,0 +1,134 @@
+"""Hollow one sample of a generator's voxels; see the package's docstring for where it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from printprep.arrays import Bool, Float
+from printprep.errors import UsageError
+from printprep.generators.form import occupancy
+from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.paper.domain import (
+    Filling,
+    PaperDomain,
+    ShellRule,
+    build_domain,
+)
+from printprep.paper.settings import PaperSettings
+
+Solve = Callable[[PaperDomain], Float]
+"""Density of a domain, (64, 64, 64) in [0, 1]: what is above one half is material."""
+
+Solver = Literal["plane", "adam"]
+
+
+@dataclass(frozen=True, eq=False)
+class VoxelHollow:
+    """What to build, in the generator's own form, and what to leave out.
+
+    material : V, the voxels to hand to the generator's second stage, in the form of the input
+        (coordinates with the same columns and number type, or a binary array; numpy or torch).
+    cavity : the surface of H, closed, in [-0.5, 0.5]³.
+    domain : shell, interior and base the density was found on.
+    density : (64, 64, 64) float64, ρ̃.
+    cavity_voxels, material_voxels : (64, 64, 64) bool, H and V.
+    mass_ratio : voxels of V over voxels of the filled solid, base included.
+    """
+
+    material: Any
+    cavity: VoxelSurface
+    domain: PaperDomain
+    density: Float
+    cavity_voxels: Bool
+    material_voxels: Bool
+    mass_ratio: float
+
+
+def hollow(
+    voxels: Any,
+    *,
+    objective: Literal["lean", "paper"] = "paper",
+    lean_deg: float = 10.0,
+    solver: Solver = "plane",
+    settings: PaperSettings | None = None,
+    solve: Solve | None = None,
+    batch: int = 0,
+    device: str = "cpu",
+    shell: ShellRule = "auto",
+    filling: Filling = "flood",
+) -> VoxelHollow:
+    """Fill the solid that voxels describe, optimize its interior, and hand the material back.
+
+    Parameters
+    ----------
+    voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see `form.occupancy`.
+    objective : "paper", the paper's terms, or "lean", the least material that stands at
+        ``lean_deg`` (see :mod:`printprep.paper.voxel_lean`).
+    solver : of the paper's terms: as a plane, or by Adam (on ``device``).
+    settings : the paper's parameters; None for its values.
+    solve : another program in place of the paper's: a function from the domain to a density.
+    batch : which sample of a batched tensor; its number is kept in the result's batch column.
+    shell, filling : see `build_domain`; a surface that leaks wants filling="slices".
+
+    Raises
+    ------
+    InputError : the voxels cannot be read as such.
+    UsageError : options that exclude each other, or that do not exist.
+    """
+    occupied, form = occupancy(voxels, batch=batch)
+    chosen = settings or PaperSettings()
+    if solve is None:
+        solve = (
+            _lean(lean_deg, solver, device)
+            if objective == "lean"
+            else _paper(objective, solver, chosen, device)
+        )
+    elif (solver, device) != ("plane", "cpu"):
+        raise UsageError("solver and device belong to the paper's objective, not to solve")
+    domain = build_domain(occupied, chosen, shell=shell, filling=filling)
+    density = solve(domain)
+    if density.shape != domain.shape:
+        raise UsageError(f"solve gave a density of shape {density.shape}, not {domain.shape}")
+    material = domain.shell | (domain.free & (density > 0.5))
+    cavity = domain.solid & ~material
+    return VoxelHollow(
+        material=form.write(material),
+        cavity=surface_of(cavity),
+        domain=domain,
+        density=density,
+        cavity_voxels=cavity,
+        material_voxels=material,
+        mass_ratio=np.count_nonzero(material) / np.count_nonzero(domain.solid),
+    )
+
+
+def _lean(lean_deg: float, solver: str, device: str) -> Solve:
+    if (solver, device) != ("plane", "cpu"):
+        raise UsageError("solver and device belong to the paper's objective, not to lean")
+    if not 0 <= lean_deg <= 60:
+        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
+    from printprep.paper.voxel_lean import footprints, leanest
+
+    return lambda domain: leanest(domain, lean_deg, footprints(domain)).weight
+
+
+def _paper(objective: str, solver: str, settings: PaperSettings, device: str) -> Solve:
+    if objective != "paper":
+        raise UsageError(
+            f"objective {objective!r} is neither lean nor paper", "pass another as solve"
+        )
+    if solver == "plane":
+        if device != "cpu":
+            raise UsageError("the plane is solved on the cpu", "use solver adam with a device")
+        from printprep.paper.plane import solve_plane
+
+        return lambda domain: solve_plane(domain, settings).smoothed
+    if solver == "adam":
+        from printprep.paper.adam import solve_adam
+
+        return lambda domain: solve_adam(domain, settings, device=device).smoothed
+    raise UsageError(f"solver {solver!r} is not one of plane, adam")

@@ -1,0 +1,25 @@
+"""A generator's voxels as a model: the surface of the solid they mean."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from printprep.generators.form import occupancy
+from printprep.generators.read import read_voxels
+from printprep.generators.surface import surface_of
+from printprep.mesh.read import RawMesh
+from printprep.paper.domain import fill
+
+
+def read_model(path: Path) -> RawMesh:
+    """The filled solid of a voxel file as triangles, 1 mm along the grid's edge, z up.
+
+    The generator's frame [-0.5, 0.5]³ has no unit: a size is to be asked for beside it.
+
+    Raises InputError when the file cannot be read as voxels, or holds none.
+    """
+    occupied, _ = occupancy(read_voxels(path), name=str(path))
+    surface = surface_of(fill(occupied))
+    return RawMesh(surface.vertices, surface.faces, path.stem, np.eye(4))

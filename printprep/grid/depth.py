@@ -1,0 +1,145 @@
+"""How deep the material is: on the grid of the optimization, and finer where the wall will end.
+
+The free interior is what lies deeper than the wall, in mm and not in voxels (method.md); the field
+that decides it is several times finer than the grid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.grid.balls import deepest_points
+from printprep.grid.distance import LIPSCHITZ, DepthField, Surface, coarse_depth, refine
+from printprep.grid.grid import block_around, cropped, grid_over
+from printprep.types import Grid
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from printprep.arrays import Float
+    from printprep.types import Solid
+
+
+# Cells of the fine field per wall: at three, the facets of a surface of curvature radius `wall`
+# stay within (wall/3)²·2/(8·wall) = 0.028 wall of it.
+CELLS_PER_WALL = 3.0
+# And no more cells along the longest side than this: 57 million at most, 230 MB.
+MOST_FINE_CELLS = 384
+
+
+@dataclass(frozen=True, eq=False)
+class Depths:
+    """Depth below a solid's surface, mm, positive inside.
+
+    coarse : on the grid of the optimization.
+    field : several times finer, over the block that holds everything deeper than the wall; pockets
+    too small for the minimum feature are already closed.  None when nothing is that deep.
+    """
+
+    coarse: DepthField
+    field: DepthField | None
+
+    @property
+    def grid(self) -> Grid:
+        """The grid of the optimization."""
+        return self.coarse.grid
+
+
+def measure_depths(
+    solid: Solid,
+    *,
+    resolution: int,
+    wall_mm: float,
+    min_feature_mm: float,
+    margin_mm: float = 0.0,
+    cells_per_wall: float = CELLS_PER_WALL,
+) -> Depths:
+    """Voxelize a solid and measure how deep its material is.
+
+    Parameters
+    ----------
+    resolution : voxels along the longest side, the paper's N (64).
+    wall_mm : the depth at which a cavity may begin.
+    min_feature_mm : a pocket that cannot hold a ball of this diameter stays solid.
+    margin_mm : room on the grid around the solid in x and y.
+    cells_per_wall : of the fine field.
+    """
+    surface = Surface.of(solid.manifold)
+    box = np.array(solid.manifold.bounding_box())
+    coarse = coarse_depth(surface, grid_over(box[:3], box[3:], resolution, margin_mm))
+    field = _fine_field(surface, coarse, wall_mm, wall_mm / cells_per_wall)
+    if field is not None:
+        field = close_small_pockets(surface, field, wall_mm, min_feature_mm)
+    return Depths(coarse, field)
+
+
+def _fine_field(
+    surface: Surface, coarse: DepthField, wall_mm: float, cell_mm: float
+) -> DepthField | None:
+    """The field fine enough for the wall, over the block that holds everything deeper than it."""
+    pitch = coarse.grid.pitch_mm
+    maybe = coarse.depth_mm > wall_mm - pitch
+    if not maybe.any():
+        return None
+    block = block_around(maybe, margin=1)
+    field = DepthField(cropped(coarse.grid, block), coarse.depth_mm[block])
+    longest = max(coarse.grid.shape) * pitch
+    target = max(cell_mm, longest / MOST_FINE_CELLS)
+    for factor in _factors(pitch / target):
+        field = refine(surface, field, factor, wall_mm)
+    return field if bool((field.depth_mm > wall_mm).any()) else None
+
+
+def _factors(ratio: float) -> tuple[int, ...]:
+    """Factors of 2 and 3, largest last, whose product is the least that reaches ``ratio``."""
+    best: tuple[int, ...] = ()
+    best_product = float("inf")
+    for threes in range(5):
+        twos = max(0, int(np.ceil(np.log2(max(ratio, 1.0) / 3**threes) - 1e-9)))
+        product = 2**twos * 3**threes
+        if product < best_product:
+            best, best_product = (2,) * twos + (3,) * threes, product
+    return best
+
+
+def close_small_pockets(
+    surface: Surface, field: DepthField, wall_mm: float, min_feature_mm: float
+) -> DepthField | None:
+    """The field with every pocket closed that cannot hold a ball of the minimum feature."""
+    from scipy.ndimage import label
+
+    pocket, count = label(field.depth_mm > wall_mm)
+    roomy = np.unique(pocket[field.depth_mm >= wall_mm + min_feature_mm / 2])
+    small = np.ones(count + 1, dtype=bool)
+    small[[0, *roomy]] = False
+    # Between cell centres a pocket is deeper than at them by half a cell's diagonal at most.
+    pitch, enough = field.grid.pitch_mm, wall_mm + min_feature_mm / 2
+    hopeful = np.unique(pocket[field.depth_mm >= enough - LIPSCHITZ * pitch])
+    doubtful = hopeful[small[hopeful] & (hopeful > 0)]
+    if len(doubtful):
+        starts = _peaks(pocket, doubtful, field)
+        _, depth = deepest_points(surface.distance_mm, starts, pitch, enough)
+        small[doubtful] = depth < enough
+    if not small.any():
+        return field
+    if small[1:].all():
+        return None
+    closed = np.where(small[pocket], np.float32(wall_mm - field.grid.pitch_mm / 2), field.depth_mm)
+    return DepthField(field.grid, closed)
+
+
+def _peaks(pocket: NDArray[np.int32], numbers: NDArray[np.intp], field: DepthField) -> Float:
+    """(k, 3) where the field is deepest in each of these pockets."""
+    from scipy.ndimage import find_objects
+
+    boxes = find_objects(pocket)
+    peaks = []
+    for number in numbers:
+        box = boxes[number - 1]
+        inside = np.where(pocket[box] == number, field.depth_mm[box], -np.inf)
+        peak = np.unravel_index(int(np.argmax(inside)), inside.shape)
+        peaks.append([axis.start + at for axis, at in zip(box, peak, strict=True)])
+    return field.grid.origin_mm + field.grid.pitch_mm * np.array(peaks)

@@ -1,0 +1,173 @@
+"""Find the ballast: the program on what infill weighs, corrected by what the slicer deposits.
+
+Sparse infill is the slicer's own affair, so where a slicer is at hand it is asked: once without
+ballast, whose deposited moments replace the estimate, then with the ballast that these call for,
+until the print stands at the lean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.cavity.carve import make_part
+from printprep.density.outcome import density_of
+from printprep.mesh.measure import together
+from printprep.stand.contact import contact_of
+from printprep.stand.lean import tilt_toward
+from printprep.stand.stability import balanced, least
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float
+    from printprep.density.program import BasePolicy, Choice, Program
+    from printprep.infill.test_print import TrialSlicer, Weighed
+    from printprep.types import Density, Lean, Part, Solid, Stability
+
+
+# A print that stands this much farther than it was solved for has ballast to spare.
+SPARE_DEG = 0.3
+# Out of reach, this near to what was solved for is near enough.
+NEAR_DEG = 0.1
+MOST_PRINTS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """A part with its ballast.
+
+    moments : (4,) mm³ and mm⁴ of the whole print;  ballast_mm3 : what the ballast adds to it.
+    """
+
+    density: Density
+    part: Part
+    ballast: tuple[Manifold, ...]
+    moments: Float
+    ballast_mm3: float
+    standing: Stability
+
+
+def settle_estimated(solid: Solid, program: Program, choice: Choice, sparse: float) -> Filled:
+    """A choice as it is weighed without a slicer; sparse : density of what is not filled."""
+    moments = sum((part.moments for part in choice.parts), np.zeros(4))
+    return Filled(
+        density=density_of(choice, program, sparse),
+        part=make_part(solid, choice.base, ()),
+        ballast=_ballast(program, choice),
+        moments=moments,
+        ballast_mm3=float(moments[0] - program.unfilled(choice.base).sum(axis=0)[0]),
+        standing=stability_of_choice(program, choice),
+    )
+
+
+def settle_weighed(
+    solid: Solid,
+    program: Program,
+    policy: BasePolicy,
+    lean: Lean,
+    sparse: float,
+    trial_slicer: TrialSlicer,
+) -> Filled | None:
+    """The lightest filling found whose print stands at the lean, measured in its G-code.
+
+    None where nothing of some body touches the bed: a slicer may refuse it.
+    """
+    choice = program.choose(policy, lean)
+    if any(part.solution is None for part in choice.parts):
+        return None
+    bare = trial_slicer.weigh(make_part(solid, choice.base, ()), (), _apart(program, choice))
+    program = _corrected(program, choice, bare.moments - program.unfilled(choice.base))
+    unballasted = program
+    margin = program.profile.stability.lean_margin_deg
+    # With several bodies another base might join them otherwise.
+    one = len(program.bodies) == 1
+    choice = program.choose(policy, lean) if one else program.solve(choice.base, lean, margin)
+    best: Filled | None = None
+    for _ in range(MOST_PRINTS):
+        density, part = density_of(choice, program, sparse), make_part(solid, choice.base, ())
+        ballast = _ballast(program, choice)
+        printed = trial_slicer.weigh(part, ballast, _apart(program, choice))
+        added_mm3 = (printed.moments - unballasted.unfilled(choice.base)).sum(axis=0)[0]
+        found = Filled(
+            density=density,
+            part=part,
+            ballast=ballast,
+            moments=printed.moments.sum(axis=0),
+            ballast_mm3=float(added_mm3) if ballast else 0.0,
+            standing=least(printed.stabilities),
+        )
+        best = found if best is None else _better(best, found, lean)
+        aim, tilt = density.aim_deg, tilt_toward(found.standing, lean)
+        if aim is None or tilt is None:
+            break
+        lost_deg = _by_sections(program, choice, printed, lean) - tilt
+        # Out of reach, what beads lose against the section cannot be made up for
+        goal = lean.angle_deg if choice.reached == np.inf else aim - max(lost_deg, 0.0) - NEAR_DEG
+        if tilt >= goal and not (ballast and tilt > aim + SPARE_DEG):
+            break
+        computed = np.stack([part.moments for part in choice.parts])
+        program = _corrected(program, choice, printed.moments - computed)
+        choice = program.solve(choice.base, lean, max(margin + lost_deg, 0.0))
+    return best
+
+
+def stability_of_choice(program: Program, choice: Choice) -> Stability:
+    """How a choice stands by its moments: its weakest body."""
+    each = []
+    for (_, section, _), part in zip(program.standing(choice.base), choice.parts, strict=True):
+        x, y, z = (float(value) for value in part.moments[1:] / part.moments[0])
+        each.append(balanced(contact_of(section), (x, y, z)))
+    return least(each)
+
+
+def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean) -> float:
+    """The tilt angle of a print by the sections of its feet, instead of their beads."""
+    each = [
+        balanced(contact_of(section), standing.centre_of_mass_mm)
+        for (_, section, _), standing in zip(
+            program.standing(choice.base), printed.stabilities, strict=True
+        )
+    ]
+    tilt = tilt_toward(least(each), lean)
+    assert tilt is not None  # a choice with a solution has contact
+    return tilt
+
+
+def _ballast(program: Program, choice: Choice) -> tuple[Manifold, ...]:
+    """The solids that print dense: each body below its plane."""
+    found = []
+    for part in choice.parts:
+        plane = None if part.solution is None else part.solution.plane
+        if plane is None:
+            continue
+        for cell in part.cells:
+            body = program.bodies[cell]
+            below = body.trim_by_plane([-value for value in plane.normal], -plane.offset_mm)
+            if not below.is_empty():
+                found.append(below)
+    return tuple(found)
+
+
+def _apart(program: Program, choice: Choice) -> tuple[Manifold, ...]:
+    """What stands by itself, a solid each, in the order of the choice's parts."""
+    return tuple(together([program.bodies[cell] for cell in part.cells]) for part in choice.parts)
+
+
+def _corrected(program: Program, choice: Choice, difference: Float) -> Program:
+    """The program with (k, 4) more on what stands by itself; whichever body of it is the same."""
+    moments = list(program.moments)
+    for part, more in zip(choice.parts, difference, strict=True):
+        moments[part.cells[0]] = moments[part.cells[0]] + more
+    return program.weighing(moments)
+
+
+def _better(first: Filled, second: Filled, lean: Lean) -> Filled:
+    """The lighter of two that stand, else the one that stands farther."""
+    tilts = [tilt_toward(found.standing, lean) for found in (first, second)]
+    one, other = (-np.inf if tilt is None else tilt for tilt in tilts)
+    if min(one, other) >= lean.angle_deg:
+        return second if second.moments[0] < first.moments[0] else first
+    return second if other > one else first

@@ -1,0 +1,131 @@
+"""The part as a file will hold it: float32 coordinates, welded, still one clean manifold.
+
+Files keep single precision (STL and PLY by their format, slicers once they have read a 3MF), and
+readers weld what falls on one point.  Both can break a mesh that was sound in double precision, so
+the part is brought into that form first, and everything is judged and written from it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.errors import GeometryError
+from printprep.mesh.measure import arrays, from_arrays, together
+from printprep.mesh.weld import directed_edges, drop_collapsed
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float, Int
+
+# A shell this thin on the mean and this small is what rounding leaves of a sliver, never a feature.
+_FLAT_SHELL_MM = 0.01
+_FLAT_SHELL_MM3 = 0.5
+# Surfaces that touch are drawn apart by this much, several float32 steps at any printable size.
+_APART_MM = 2e-4
+# What a try merges first; the last stays below the thousandth that the outside may move.
+_MERGED_MM = (2e-5, 5e-5, 1e-4, 2e-4, 4e-4)
+_NUDGE = "A slightly different size (--size) usually avoids it."
+
+
+def quantized(manifold: Manifold) -> Manifold:
+    """The manifold whose vertices, welded, are exactly what a file of float32 holds.
+
+    Vertices move by at most half a float32 step (8e-6 mm at 200 mm), and where two stretches of
+    surface touch along an edge, apart by less than 0.001 mm.  Flat shells (on the mean thinner than
+    0.01 mm, and below 0.5 mm³) are dropped.  Applied to its own result it changes nothing.
+
+    Raises GeometryError where no such form was found.
+    """
+    for tolerance_mm in _MERGED_MM:
+        vertices, faces = quantized_arrays(manifold)
+        if not len(crowded_edges(faces)):
+            return _without_flat_shells(_rebuilt(vertices, faces))
+        # Edges shorter than a float32 step fold triangles over when their ends are welded.
+        manifold = _drawn_apart(manifold.simplify(tolerance_mm))
+    raise GeometryError(
+        "The part touches itself along an edge and could not be drawn apart.", _NUDGE
+    )
+
+
+def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
+    """Vertices rounded to float32 and welded, and the triangles that still have three corners.
+
+    Returns (n, 3) float64 that hold float32 values, in lexicographic order, and (m, 3) int64,
+    counter-clockwise from outside, each starting at its smallest index, sorted: the same solid
+    gives the same arrays.
+    """
+    points, corners = arrays(manifold)
+    rounded = points.astype(np.float32).astype(np.float64) + 0.0  # −0 becomes 0
+    vertices, index = np.unique(rounded, axis=0, return_inverse=True)
+    faces = drop_collapsed(np.ravel(index)[corners])
+    used, inverse = np.unique(faces, return_inverse=True)
+    faces = inverse.reshape(-1, 3)
+    first = faces.argmin(axis=1)[:, None]
+    faces = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
+    return vertices[used], faces[np.lexsort(faces.T[::-1])]
+
+
+def crowded_edges(faces: Int) -> Int:
+    """Directed edges (k, 2) that do not occur exactly once with exactly one opposite."""
+    if not len(faces):
+        return np.zeros((0, 2), dtype=np.int64)
+    edges = directed_edges(faces)
+    size = int(faces.max()) + 1
+    there = np.sort(edges @ np.array([size, 1]))
+    back = np.sort(edges @ np.array([1, size]))
+    if (there[1:] != there[:-1]).all() and np.array_equal(there, back):
+        return np.zeros((0, 2), dtype=np.int64)
+    keys, counts = np.unique(there, return_counts=True)
+    start, end = np.divmod(keys, size)
+    bad = (counts != 1) | ~np.isin(end * size + start, keys)
+    return np.stack([start[bad], end[bad]], axis=1)
+
+
+def _rebuilt(vertices: Float, faces: Int) -> Manifold:
+    try:
+        return from_arrays(vertices, faces)
+    except GeometryError as error:
+        raise GeometryError(
+            f"Rounded to what a file can hold, the part is broken: {error.message}", _NUDGE
+        ) from error
+
+
+def _without_flat_shells(manifold: Manifold) -> Manifold:
+    shells = manifold.decompose()
+    kept = [shell for shell in shells if not _is_flat(shell)]
+    if not kept:
+        raise GeometryError("Nothing of the part is left once its coordinates are rounded.")
+    return manifold if len(kept) == len(shells) else together(kept)
+
+
+def _is_flat(shell: Manifold) -> bool:
+    volume, area = abs(shell.volume()), shell.surface_area()
+    return bool(volume < _FLAT_SHELL_MM3 and 2 * volume < _FLAT_SHELL_MM * area)
+
+
+def _drawn_apart(manifold: Manifold) -> Manifold:
+    """Vertices that share their place with another move a little along their own normal.
+
+    They move to the side their own fan of triangles bends to: into the material of a ridge, into
+    the void of a groove, so that what touched draws back on both sides.  The kernel's own topology
+    is kept, which welding would have lost: there each of the touching edges has its own vertices.
+    """
+    exact, faces = arrays(manifold)
+    points = exact.astype(np.float32).astype(np.float64)
+    _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
+    shared = counts[np.ravel(index)] > 1
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1, keepdims=True)
+    normal, bend = np.zeros_like(points), np.zeros_like(points)
+    for corner in range(3):
+        np.add.at(normal, faces[:, corner], normals)
+        np.add.at(bend, faces[:, corner], area * (corners.mean(axis=1) - corners[:, corner]))
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    side = np.sign((normal * bend).sum(axis=1, keepdims=True))
+    moved = np.where(shared[:, None], points + _APART_MM * side * normal, points)
+    return from_arrays(moved, faces)

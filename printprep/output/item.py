@@ -1,0 +1,42 @@
+"""The part in a 3MF: one solid mesh, and a modifier over what prints dense."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from printprep.mesh.quantize import quantized, quantized_arrays
+from printprep.output.prusa_keys import DENSE, object_keys
+from printprep.threemf.write import Item, Volume
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.profiles import Profile
+
+
+def item_of(part: Manifold, ballast: Sequence[Manifold], name: str, profile: Profile) -> Item:
+    """The part in the middle of the bed.
+
+    part : as written, on z = 0;  ballast : solids inside it or reaching out of it; where two
+    modifiers overlap the slicer prints once.
+    """
+    vertices, faces = quantized_arrays(part)
+    volumes = [Volume(name, vertices, faces)]
+    for number, solid in enumerate(ballast, 1):
+        title = "ballast" if len(ballast) == 1 else f"ballast {number}"
+        arrays = quantized_arrays(quantized(solid))
+        volumes.append(Volume(title, *arrays, "ParameterModifier", DENSE))
+    x, y = middle_of_bed(profile)
+    return Item(
+        name=name,
+        volumes=volumes,
+        settings=object_keys(profile),
+        translation_mm=(x, y, 0.0 - float(vertices[:, 2].min())),
+    )
+
+
+def middle_of_bed(profile: Profile) -> tuple[float, float]:
+    """Where a part's origin goes, mm."""
+    width, depth, _ = profile.printer.bed_mm
+    return width / 2, depth / 2

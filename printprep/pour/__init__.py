@@ -1,6 +1,0 @@
-"""What stays inside a part that should run out of it, and where it sucks while it prints."""
-
-from printprep.pour.cups import Cup, suction_cups
-from printprep.pour.trapped import Pocket, trapped
-
-__all__ = ["Cup", "Pocket", "suction_cups", "trapped"]

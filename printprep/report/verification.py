@@ -1,0 +1,135 @@
+"""What ``verify`` found out, as JSON and for a person."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from printprep.report.json import finding_json, number
+from printprep.verify.rules import (
+    centre_offset_mm,
+    contact_offset_mm,
+    tilt_as_printed,
+)
+from printprep.version import __version__
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from printprep.gcode.printed import Printed
+    from printprep.verify.run import Verified
+
+
+def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
+    """All that was found out; computed and printed figures side by side."""
+    carried, printed = found.part, found.printed
+    return {
+        "printprep": __version__,
+        "part": part,
+        "slicer": found.slicer,
+        "profile": carried.profile.name,
+        "lean_deg": number(carried.lean.angle_deg),
+        "lean_azimuth_deg": number(carried.lean.azimuth_deg),
+        "computed": {
+            "mass_g": number(carried.mass_g),
+            "centre_of_mass_mm": [number(value) for value in carried.centre_mm],
+            "tilt_deg": number(carried.tilt_deg),
+            "contact_area_mm2": number(carried.contact_area_mm2),
+            "bodies": len(carried.bodies),
+        },
+        "printed": printed_json(printed)
+        | {"tilt_deg": number(tilt_as_printed(printed, carried.lean))},
+        "mass_off": number(printed.mass_g / carried.mass_g - 1, 3),
+        "centre_off_mm": number(centre_offset_mm(carried, printed), 3),
+        "contact_off_mm": number(contact_offset_mm(carried, printed), 3),
+        "support_in_cavities_mm3": None
+        if found.supported is None
+        else number(found.supported.support_in_cavities_mm3),
+        "others": [
+            {
+                "way": other.way,
+                "mass_g": number(other.mass_g),
+                "seconds": number(other.seconds),
+                "tilt_deg": number(other.tilt_deg),
+            }
+            for other in found.baselines
+        ],
+        "slicer_warnings": list(found.warnings),
+        "findings": [finding_json(item) for item in found.findings],
+    }
+
+
+def printed_json(printed: Printed) -> dict[str, Any]:
+    """A print's own figures."""
+    return {
+        "mass_g": number(printed.mass_g),
+        "volume_mm3": number(printed.volume_mm3),
+        "centre_of_mass_mm": [number(value) for value in printed.centre_of_mass_mm],
+        "inertia_g_mm2": [[number(value) for value in row] for row in printed.inertia_g_mm2],
+        "tilt_deg": number(printed.tilt_deg),
+        "contact_polygon_mm": [
+            [number(value) for value in at] for at in printed.contact_polygon_mm
+        ],
+        "contact_area_mm2": number(printed.contact_area_mm2),
+        "in_cavities_mm3": number(printed.in_cavities_mm3),
+        "seconds": number(printed.slicer_summary.seconds),
+        "filament_mm3": number(printed.filament_mm3),
+        "filament_said_mm3": number(printed.slicer_summary.filament_mm3),
+        "mass_by_feature_g": {
+            feature: number(mass) for feature, mass in printed.feature_mass_g.items()
+        },
+        "left_out": list(printed.left_out),
+        "assumed": list(printed.assumed),
+    }
+
+
+def show_verified(console: Console, found: Verified, *, with_findings: bool = True) -> None:
+    """The summary: computed against printed, then the other ways, then the findings."""
+    from rich.table import Table
+
+    from printprep.report.terminal import show_findings
+
+    carried, printed = found.part, found.printed
+    console.print(f"Sliced with {found.slicer}, profile {carried.profile.name}")
+    facts = Table.grid(padding=(0, 2, 0, 0))
+    facts.add_column(style="dim", no_wrap=True)
+    facts.add_column(overflow="fold")
+    off = 100 * (printed.mass_g / carried.mass_g - 1)
+    facts.add_row(
+        "mass", f"{printed.mass_g:.2f} g printed, {carried.mass_g:.2f} g computed ({off:+.1f} %)"
+    )
+    facts.add_row("centre of mass", f"{centre_offset_mm(carried, printed):.2f} mm apart")
+    tilt = tilt_as_printed(printed, carried.lean)
+    computed = "no contact" if carried.tilt_deg is None else f"{carried.tilt_deg:.1f}°"
+    facts.add_row(
+        "tips at", f"{tilt:.1f}° printed, {computed} computed (asked to stand {carried.lean})"
+    )
+    facts.add_row(
+        "contact",
+        f"{printed.contact_area_mm2:.0f} mm² printed, {carried.contact_area_mm2:.0f} mm² computed",
+    )
+    if carried.cavities:
+        facts.add_row("in cavities", _nothing([printed.in_cavities_mm3]))
+    if found.supported is not None:
+        facts.add_row("support inside", _nothing([found.supported.support_in_cavities_mm3]))
+    facts.add_row("time", _hours(printed.slicer_summary.seconds))
+    for other in found.baselines:
+        facts.add_row(
+            other.way,
+            f"{other.mass_g:.2f} g, {_hours(other.seconds)}, "
+            + (f"tips at {other.tilt_deg:.1f}°" if other.tilt_deg >= 0 else "falls by itself"),
+        )
+    console.print(facts)
+    if with_findings and found.findings:
+        show_findings(console, found.findings)
+    for warning in found.warnings:
+        console.print(f"The slicer says: {warning}")
+
+
+def _nothing(volumes_mm3: Iterable[float]) -> str:
+    total = sum(volumes_mm3)
+    return f"{total / 1000:.2g} cm³" if total > 0 else "nothing"
+
+
+def _hours(seconds: float | None) -> str:
+    return "time unknown" if seconds is None else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,130 @@
+"""The part a 3MF of ours holds, with the figures it carries, where the slicer will see it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from printprep.errors import InputError
+from printprep.types import Lean
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float
+    from printprep.profiles import Profile
+
+
+_HOLLOW_IT = "make it with `printprep hollow MODEL -o PART.3mf`"
+
+
+@dataclass(frozen=True, eq=False)
+class ComputedPart:
+    """What was computed of a part, in the coordinates of the bed.
+
+    mass_g, centre_mm, tilt_deg (None without contact; toward the lean's azimuth, if it has one),
+    lean, contact_polygon_mm ((k, 2), empty without contact), contact_area_mm2, profile : as
+    carried.
+    sure_polygon_mm : (k, 2) hull of the contact where it is at least a line wide: what is narrower
+    a slicer may leave out; empty where all of it is.
+    size_mm, middle_mm : (3,) of the bounding box;  placement : (4, 4) model's file → bed;
+    cavities : sealed voids of the mesh;  bodies : what of the mesh does not touch each other.
+    """
+
+    file: Path
+    mass_g: float
+    centre_mm: Float
+    tilt_deg: float | None
+    lean: Lean
+    contact_polygon_mm: Float
+    contact_area_mm2: float
+    sure_polygon_mm: Float
+    bodies: tuple[Manifold, ...]
+    size_mm: Float
+    middle_mm: Float
+    placement: Float
+    cavities: tuple[Manifold, ...]
+    profile: Profile
+
+
+def computed_part(path: str | Path) -> ComputedPart:
+    """Read PART.3mf.  Raises InputError where it is not ours, older than this, or broken."""
+    from printprep.mesh.measure import bodies, shells, try_manifold
+    from printprep.mesh.weld import weld
+    from printprep.threemf.read import read_3mf
+
+    path = Path(path)
+    if path.is_file() and path.suffix.lower() != ".3mf":
+        raise InputError(f"{path.name}: carries no computed figures: it is no 3MF", _HOLLOW_IT)
+    found = read_3mf(path)
+    said = _figures(path, found.attachments)
+    manifold, status = try_manifold(*weld(found.vertices, found.faces))
+    if manifold.is_empty():
+        raise InputError(
+            f"{path.name}: its mesh is not the solid that was written ({status})", _HOLLOW_IT
+        )
+    try:
+        low, high = np.array(said["bounds_mm"], dtype=float)
+        shift = np.array([*manifold.bounding_box()[:3]]) - low
+        contact = said["contact"] or {"polygon_mm": np.zeros((0, 3)), "area_mm2": 0.0}
+        moved = np.eye(4)
+        moved[:3, 3] = shift
+        profile = _profile(said)
+        return ComputedPart(
+            file=path,
+            mass_g=float(said["mass_g"]),
+            centre_mm=np.array(said["centre_of_mass_mm"], dtype=float) + shift,
+            tilt_deg=said["tilt_deg"],
+            lean=Lean(float(said["lean_deg"]), said["lean_azimuth_deg"]),
+            contact_polygon_mm=np.array(contact["polygon_mm"], dtype=float)[:, :2] + shift[:2],
+            contact_area_mm2=float(contact["area_mm2"]),
+            sure_polygon_mm=_sure(manifold, profile),
+            bodies=bodies(manifold),
+            size_mm=high - low,
+            middle_mm=(low + high) / 2 + shift,
+            placement=moved @ np.array(said["placement"], dtype=float),
+            cavities=shells(manifold)[1],
+            profile=profile,
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{path.name}: its figures are not those of this printprep ({error})", _HOLLOW_IT
+        ) from error
+
+
+def _figures(path: Path, attachments: Any) -> dict[str, Any]:
+    from printprep.threemf.read import ATTACHMENT
+
+    if ATTACHMENT not in attachments:
+        raise InputError(f"{path.name}: carries no {ATTACHMENT} with computed figures", _HOLLOW_IT)
+    try:
+        said = json.loads(attachments[ATTACHMENT])
+    except ValueError as error:
+        raise InputError(f"{path.name}: {ATTACHMENT} is no JSON ({error})", _HOLLOW_IT) from error
+    if not isinstance(said, dict):
+        raise InputError(f"{path.name}: {ATTACHMENT} holds no figures", _HOLLOW_IT)
+    return said
+
+
+def _sure(manifold: Manifold, profile: Profile) -> Float:
+    """The hull of the first layer's section, opened by a line's width."""
+    from manifold3d import JoinType
+
+    from printprep.stand.contact import contact_of, section_at_bed
+
+    bed_mm = manifold.bounding_box()[2]
+    section = section_at_bed(manifold.translate((0, 0, -bed_mm)), profile.printer.first_layer_mm)
+    half = (profile.printer.line_width_mm or 0.0) / 2
+    opened = contact_of(section.offset(-half, JoinType.Round).offset(half, JoinType.Round))
+    return np.zeros((0, 2)) if opened is None else opened.polygon_mm
+
+
+def _profile(said: dict[str, Any]) -> Profile:
+    from printprep.profiles import Profile
+
+    profile: Profile = Profile.model_validate({**said["settings"], "name": said["profile"]})
+    return profile

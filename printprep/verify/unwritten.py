@@ -1,0 +1,51 @@
+"""Verify a part before it is written: the file it would become, sliced from a temporary folder."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from printprep.errors import UsageError
+from printprep.progress import SILENT, Progress
+
+if TYPE_CHECKING:
+    from printprep.profiles import Profile
+    from printprep.types import HollowResult
+    from printprep.verify.run import Verified
+
+
+def check_verifiable(
+    target: Path, profile: str | Path | Profile, overrides: Mapping[str, object]
+) -> None:
+    """Find out before the long work whether a part can be verified.
+
+    Raises UsageError for a target that is no 3MF or a profile that is not fdm, ToolError where
+    there is no slicer.
+    """
+    from printprep.profiles import load_profile
+    from printprep.slicer.process import find_slicer
+    from printprep.slicer.prusa_ini import profile_settings
+
+    if target.suffix.lower() != ".3mf":
+        raise UsageError(
+            f"{target}: only a 3MF carries the settings and figures to verify.",
+            "Name an --output that ends with .3mf, or leave out --verify.",
+        )
+    profile_settings(load_profile(profile, overrides))
+    find_slicer()
+
+
+def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verified:
+    """Slice the 3MF that ``result`` would be written as, and compare.
+
+    Raises what :func:`printprep.verify.run.verify` raises.
+    """
+    from printprep.output.part_file import part_bytes
+    from printprep.verify.run import verify
+
+    with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
+        part = Path(folder) / "part.3mf"
+        part.write_bytes(part_bytes(result, part.suffix))
+        return verify(part, progress=progress)
