@@ -31,8 +31,12 @@ USAGE, UNAVAILABLE, INTERRUPTED = 2, 69, 130
 # CI tests; it comes from the user's own package index where that has it, else from PyTorch's.
 CPU_TORCH = "2.13.0+cpu"
 CPU_INDEX = "https://download.pytorch.org/whl/cpu"
-# More workers than this gain nothing: each takes seconds to start and half a gigabyte.
-PARALLEL = ("-n", "auto", "--maxprocesses=8", "--dist", "loadgroup", "--max-worker-restart=0")
+# More workers than eight gain nothing: each takes seconds to start and half a gigabyte. Tests begin
+# in the order that tests/tiers.py gives them, and a worker that crashes ends the run.
+PARALLEL = (
+    *("-n", "auto", "--maxprocesses=8", "--max-worker-restart=0"),
+    *("--dist", "loadgroup", "--no-loadscope-reorder"),
+)
 LINES_SHOWN = 15
 
 

@@ -62,6 +62,7 @@ def test_walls_are_measured_from_voids_the_model_already_has() -> None:
     assert len(part.cavities) == 1
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(st.integers(0, 2**32 - 1))
 def test_random_unions_keep_wall_and_manifold(seed: int) -> None:

@@ -17,6 +17,9 @@ from printprep.output.part_file import part_bytes
 from printprep.output.plugs import plugs_3mf
 from printprep.pipeline.hollow import hollow
 
+# One worker drains the tower for all of them
+pytestmark = pytest.mark.xdist_group("drained tower")
+
 
 @pytest.fixture(scope="module")
 def tower() -> trimesh.Trimesh:
@@ -48,6 +51,7 @@ def test_it_drains_and_stands_with_its_holes_weighed(result):
         assert np.linalg.norm(drain.axis) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_the_layers_of_a_slicer_hold_nothing_shut(result):
     part = result.part
     undrained = quantized(Manifold.batch_boolean([part.outside, *part.cavities], OpType.Subtract))

@@ -16,6 +16,9 @@ from printprep.pipeline.explore import Exploration, explore
 from printprep.pipeline.hollow import hollow
 from printprep.report.chart import chart
 
+# One worker explores the prism for all of them
+pytestmark = pytest.mark.xdist_group("explored prism")
+
 
 @pytest.fixture(scope="module")
 def prism(tmp_path_factory: pytest.TempPathFactory) -> Path:
