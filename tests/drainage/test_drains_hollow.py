@@ -51,7 +51,8 @@ def test_it_drains_and_stands_with_its_holes_weighed(result):
         assert np.linalg.norm(drain.axis) == pytest.approx(1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.slicer
+@pytest.mark.usefixtures("prusa_slicer")
 def test_the_layers_of_a_slicer_hold_nothing_shut(result):
     part = result.part
     undrained = quantized(Manifold.batch_boolean([part.outside, *part.cavities], OpType.Subtract))
