@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "check
 
 from check_cases import CASES, Case, found_in
 
-from printprep.check import rules
+from printprep.check import RULES
 from printprep.types import Finding
 
 _INTRO = """\
@@ -69,7 +69,7 @@ def page(found: list[tuple[Case, tuple[Finding, ...]]]) -> str:
 
 
 def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
-    counts: dict[str, Counter[str]] = {rule: Counter() for rule in rules()}
+    counts: dict[str, Counter[str]] = {rule: Counter() for rule in RULES}
     for case, items in found:
         wanted = {rule for rule, _ in case.wanted}
         said = {item.rule for item in items}
@@ -89,7 +89,7 @@ def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
         "| rule | what for | found | missed | false alarms | rightly silent |",
         "|---|---|---|---|---|---|",
     ]
-    for rule, check in rules().items():
+    for rule, check in RULES.items():
         count = counts[rule]
         what = " ".join((check.__doc__ or "").split("\n\n")[0].split())
         lines.append(

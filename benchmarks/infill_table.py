@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from printprep.infill.test_print import TrialSlicer, Weighed
 from rows import catalogue, markdown_lines
 from verify_table import MODELS
 
@@ -25,14 +26,13 @@ from printprep import hollow
 from printprep.cavity.carve import make_part
 from printprep.errors import ToolError
 from printprep.gcode.measure import measure_gcode
-from printprep.infill.test_print import TrialSlicer, Weighed
+from printprep.gcode.stability import tilt_as_printed
 from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
 from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import profile_settings
 from printprep.stand.stability import least
 from printprep.types import Solid
-from printprep.verify.rules import tilt_as_printed
 from printprep.verify.run import verify
 
 COLUMNS = (

@@ -22,13 +22,9 @@ from rows import catalogue, markdown_lines
 
 from printprep import hollow
 from printprep.gcode.printed import Printed
+from printprep.gcode.stability import tilt_as_printed
 from printprep.verify.part_3mf import ComputedPart
-from printprep.verify.rules import (
-    centre_limit_mm,
-    centre_offset_mm,
-    contact_offset_mm,
-    tilt_as_printed,
-)
+from printprep.verify.rules import centre_limit_mm, centre_offset_mm, contact_offset_mm
 from printprep.verify.run import verify
 
 MODELS = (

@@ -6,8 +6,17 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
+
+from printprep.process import PROCESSES, Process
 
 
 def _bounded(low: float, high: float, **more: Any) -> Any:
@@ -27,6 +36,14 @@ def _settings(value: object) -> object:
     if "post_process" in value:  # a file that carries commands must never leave this program
         raise PydanticCustomError("forbidden", "must not hold post_process, which runs commands")
     return {key: _setting_text(item) for key, item in value.items()}
+
+
+def _known_process(value: str) -> str:
+    if value not in PROCESSES:
+        *others, last = PROCESSES
+        known = f"{', '.join(others)} or {last}"
+        raise PydanticCustomError("unknown", "must be {known}", {"known": known})
+    return value
 
 
 class _Frozen(BaseModel):
@@ -104,7 +121,7 @@ class Profile(_Frozen):
     """One printer, material and process, with the limits that a part has to keep."""
 
     name: str = Field(min_length=1, strict=True)
-    process: Literal["fdm", "resin", "powder"]
+    process: Annotated[str, AfterValidator(_known_process)]
     wall_mm: float = _bounded(0.2, 50.0)
     min_feature_mm: float = _bounded(0.1, 50.0)
     min_gap_mm: float | None = _bounded(0.01, 50.0, default=None)
@@ -120,12 +137,13 @@ class Profile(_Frozen):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         printer, drain = self.printer, self.drain
-        if self.process == "fdm":
+        needed = f"is needed where process is {self.process}"
+        if self.traits.has_nozzle:
             for key in ("nozzle_mm", "line_width_mm"):
                 if getattr(printer, key) is None:
-                    raise _impossible(f"printer.{key}", "is needed where process is fdm")
+                    raise _impossible(f"printer.{key}", needed)
             if self.column_slenderness is None:
-                raise _impossible("column_slenderness", "is needed where process is fdm")
+                raise _impossible("column_slenderness", needed)
             assert printer.nozzle_mm is not None and printer.line_width_mm is not None
             _within("printer.layer_height_mm", printer.layer_height_mm, 0.0, printer.nozzle_mm)
             _within("printer.first_layer_mm", printer.first_layer_mm, 0.0, printer.nozzle_mm)
@@ -147,6 +165,11 @@ class Profile(_Frozen):
         return self
 
     @property
+    def traits(self) -> Process:
+        """What the profile's process does to a part."""
+        return PROCESSES[self.process]
+
+    @property
     def object_settings(self) -> Mapping[str, str]:
         """What a 3MF carries for the slicer: the profile's own keys, and walls all of perimeters.
 
@@ -156,7 +179,7 @@ class Profile(_Frozen):
         """
         keys = dict(self.slicer.object_settings)
         width_mm = self.printer.line_width_mm
-        if self.process == "fdm" and width_mm is not None:
+        if width_mm is not None:
             perimeters = math.ceil(self.wall_mm / (2 * width_mm) - 1e-6)
             if perimeters > 2:
                 keys.setdefault("perimeters", str(perimeters))

@@ -131,7 +131,7 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
 
 
 def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
-    if kind in ("impossible", "forbidden"):
+    if kind in ("impossible", "forbidden", "unknown"):
         return str(item["msg"])
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""

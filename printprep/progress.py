@@ -11,20 +11,50 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from types import MappingProxyType
-from typing import Protocol
+from typing import Literal, Protocol
 
-STAGES: Mapping[str, str] = MappingProxyType(
+Stage = Literal[
+    "read",
+    "repair",
+    "voxelize",
+    "cavity",
+    "supports",
+    "base",
+    "solve",
+    "advice",
+    "check",
+    "alternative",
+    "simulate",
+    "draw",
+    "write",
+    "read-part",
+    "slice",
+    "slice-supports",
+    "slice-solid",
+    "slice-baselines",
+]
+"""Names of stages: a run's seconds are told by them."""
+
+STAGES: Mapping[Stage, str] = MappingProxyType(
     {
         "read": "Reading the model",
         "repair": "Making it a solid",
         "voxelize": "Measuring how deep the material is",
-        "supports": "Carrying the cavity's ceilings from inside",
-        "base": "Choosing what it stands on",
-        "solve": "Finding the lightest filling that stands",
         "cavity": "Cutting the cavity",
+        "supports": "Building vaults under the ceilings",
+        "base": "Choosing a base",
+        "solve": "Finding the lightest filling that stands",
         "advice": "Looking for what would make it stand",
-        "check": "Checking walls, stand and surface",
+        "check": "Checking walls, tilt angle and surface",
+        "alternative": "Estimating the other fill",
+        "simulate": "Simulating how it stands",
+        "draw": "Drawing the simulation",
         "write": "Writing the file",
+        "read-part": "Reading the part",
+        "slice": "Slicing the part",
+        "slice-supports": "Slicing it with supports switched on",
+        "slice-solid": "Slicing the solid model",
+        "slice-baselines": "Slicing the model with plain infill",
     }
 )
 
@@ -32,7 +62,7 @@ STAGES: Mapping[str, str] = MappingProxyType(
 class Progress(Protocol):
     """Whatever wants to know which stage runs."""
 
-    def stage(self, name: str) -> AbstractContextManager[None]:
+    def stage(self, name: Stage) -> AbstractContextManager[None]:
         """A context held open while stage ``name`` (a key of ``STAGES``) runs."""
         ...
 
@@ -40,7 +70,7 @@ class Progress(Protocol):
 class Silent:
     """Says nothing: the default of the Python interface, of ``-q`` and of a redirected stderr."""
 
-    def stage(self, name: str) -> AbstractContextManager[None]:
+    def stage(self, name: Stage) -> AbstractContextManager[None]:
         del name
         return nullcontext()
 
@@ -54,8 +84,8 @@ class Spinner:
         self._console = Console(stderr=True)
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        with self._console.status(f"{STAGES.get(name, name)} …"):
+    def stage(self, name: Stage) -> Iterator[None]:
+        with self._console.status(f"{STAGES[name]} …"):
             yield
 
 
@@ -75,10 +105,10 @@ class Stopwatch:
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
-        self.seconds: dict[str, float] = {}
+        self.seconds: dict[Stage, float] = {}
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
+    def stage(self, name: Stage) -> Iterator[None]:
         """Time what runs inside, under this name."""
         start = time.perf_counter()
         with self._progress.stage(name):

@@ -15,7 +15,7 @@ from printprep.evaluate.published import PUBLISHED, SOURCE, Published
 from printprep.evaluate.run import Evaluation
 from printprep.evaluate.summary import Summary, compare, summary
 from printprep.files import write_atomically
-from printprep.report.json import to_text
+from printprep.output.numbers import to_text
 
 HEAD = (
     "method", "data set", "Mas", "mass ratio", "Stable %", "Rot °", "tilt °", "F-score", "Chamfer",

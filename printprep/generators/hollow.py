@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +12,13 @@ from printprep.arrays import Bool, Float
 from printprep.errors import UsageError
 from printprep.generators.form import occupancy
 from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.objectives import (
+    DEFAULT_OBJECTIVE,
+    PLANE,
+    Solver,
+    check_solver,
+    objective_of,
+)
 from printprep.paper.domain import (
     Filling,
     PaperDomain,
@@ -19,11 +26,10 @@ from printprep.paper.domain import (
     build_domain,
 )
 from printprep.paper.settings import PaperSettings
+from printprep.stand.lean import MOST_DEG
 
 Solve = Callable[[PaperDomain], Float]
 """Density of a domain, (64, 64, 64) in [0, 1]: what is above one half is material."""
-
-Solver = Literal["plane", "adam"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +57,9 @@ class VoxelHollow:
 def hollow(
     voxels: Any,
     *,
-    objective: Literal["lean", "paper"] = "paper",
+    objective: str = DEFAULT_OBJECTIVE,
     lean_deg: float = 10.0,
-    solver: Solver = "plane",
+    solver: str = PLANE,
     settings: PaperSettings | None = None,
     solve: Solve | None = None,
     batch: int = 0,
@@ -66,9 +72,9 @@ def hollow(
     Parameters
     ----------
     voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see `form.occupancy`.
-    objective : "paper", the paper's terms, or "lean", the least material that stands at
-        ``lean_deg`` (see :mod:`printprep.paper.voxel_lean`).
-    solver : of the paper's terms: as a plane, or by Adam (on ``device``).
+    objective : a name in :data:`printprep.objectives.OBJECTIVES`: "lean", the least material that
+        stands at ``lean_deg`` (:mod:`printprep.paper.voxel_lean`), or "paper", the paper's terms.
+    solver : of the paper's terms: "plane", or "adam" on ``device``.
     settings : the paper's parameters; None for its values.
     solve : another program in place of the paper's: a function from the domain to a density.
     batch : which sample of a batched tensor; its number is kept in the result's batch column.
@@ -81,16 +87,15 @@ def hollow(
     """
     occupied, form = occupancy(voxels, batch=batch)
     chosen = settings or PaperSettings()
-    if solve is None:
-        solve = (
-            _lean(lean_deg, solver, device)
-            if objective == "lean"
-            else _paper(objective, solver, chosen, device)
-        )
-    elif (solver, device) != ("plane", "cpu"):
-        raise UsageError("solver and device belong to the paper's objective, not to solve")
+    how = Solver(solver, device)
+    if solve is not None and how != Solver():
+        raise UsageError("solver and device belong to an objective, not to solve.")
+    row = objective_of(objective)
+    check_solver(row, how)
+    if not 0 <= lean_deg <= MOST_DEG:
+        raise UsageError(f"A lean of {lean_deg:g}° is not between 0° and {MOST_DEG:g}°.")
     domain = build_domain(occupied, chosen, shell=shell, filling=filling)
-    density = solve(domain)
+    density = row.on_voxels(domain, lean_deg, chosen, how) if solve is None else solve(domain)
     if density.shape != domain.shape:
         raise UsageError(f"solve gave a density of shape {density.shape}, not {domain.shape}")
     material = domain.shell | (domain.free & (density > 0.5))
@@ -104,31 +109,3 @@ def hollow(
         material_voxels=material,
         mass_ratio=np.count_nonzero(material) / np.count_nonzero(domain.solid),
     )
-
-
-def _lean(lean_deg: float, solver: str, device: str) -> Solve:
-    if (solver, device) != ("plane", "cpu"):
-        raise UsageError("solver and device belong to the paper's objective, not to lean")
-    if not 0 <= lean_deg <= 60:
-        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
-    from printprep.paper.voxel_lean import footprints, leanest
-
-    return lambda domain: leanest(domain, lean_deg, footprints(domain)).weight
-
-
-def _paper(objective: str, solver: str, settings: PaperSettings, device: str) -> Solve:
-    if objective != "paper":
-        raise UsageError(
-            f"objective {objective!r} is neither lean nor paper", "pass another as solve"
-        )
-    if solver == "plane":
-        if device != "cpu":
-            raise UsageError("the plane is solved on the cpu", "use solver adam with a device")
-        from printprep.paper.plane import solve_plane
-
-        return lambda domain: solve_plane(domain, settings).smoothed
-    if solver == "adam":
-        from printprep.paper.adam import solve_adam
-
-        return lambda domain: solve_adam(domain, settings, device=device).smoothed
-    raise UsageError(f"solver {solver!r} is not one of plane, adam")

@@ -131,6 +131,19 @@ def find_slicer(path: Path | None = None) -> Slicer:
     raise ToolError("PrusaSlicer was not found", INSTALL_HINT)
 
 
+def slicer_if_any(path: Path | None = None) -> Slicer | None:
+    """The slicer at a path, or one that is found; None where none is found.
+
+    Raises ToolError where a slicer that was named does not answer.
+    """
+    try:
+        return find_slicer(path)
+    except ToolError:
+        if path is not None or os.environ.get(SLICER_VARIABLE):
+            raise
+        return None
+
+
 def _usual_places() -> list[Path]:
     if sys.platform == "darwin":
         roots = [Path("/Applications"), Path.home() / "Applications"]

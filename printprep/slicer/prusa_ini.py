@@ -23,10 +23,10 @@ def profile_settings(profile: Profile) -> dict[str, str]:
     Raises UsageError for a profile that is not fdm.
     """
     printer = profile.printer
-    if profile.process != "fdm" or printer.nozzle_mm is None or printer.line_width_mm is None:
+    if printer.nozzle_mm is None or printer.line_width_mm is None:
         raise UsageError(
-            f"profile {profile.name} is for {profile.process}: PrusaSlicer's .ini is for fdm",
-            "choose an fdm profile",
+            f"PrusaSlicer's .ini is for filament; profile {profile.name} is for {profile.process}.",
+            "Choose a profile for filament: `printprep profiles` lists them.",
         )
     width = f"{printer.line_width_mm:g}"
     x, y, z = (f"{length:g}" for length in printer.bed_mm)

@@ -26,11 +26,11 @@ def handed(monkeypatch, tmp_path):
     """What the command hands to the method, which finds a cube with ``drainage``."""
     seen: dict[str, object] = {"drainage": DRAINS}
 
-    def hollow(model, **options):
-        seen.update(options, model=model)
-        return hollow_result(profile=options["profile"], name=model.stem, drainage=seen["drainage"])
+    def hollow_with(model, profile, placement, options, progress):
+        seen.update(profile=profile, placement=placement, options=options, model=model)
+        return hollow_result(profile=profile, name=model.stem, drainage=seen["drainage"])
 
-    monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", hollow_with)
     monkeypatch.chdir(tmp_path)
     return seen
 

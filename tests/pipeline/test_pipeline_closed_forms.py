@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from printprep.errors import UsageError
 from printprep.mesh.measure import arrays, mass_properties
 from printprep.pipeline.hollow import hollow
-from printprep.types import HollowResult
+from printprep.result import HollowResult
 
 WALL = 1.2
 GRAMS = 1.24 / 1000

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.output.item import item_of
+from printprep.output.item import infill_item
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -54,7 +54,7 @@ class TrialSlicer:
         """
         from printprep.threemf.write import write_3mf
 
-        item = item_of(part.manifold, ballast, part.name, self.profile)
+        item = infill_item(part.manifold, ballast, part.name, self.profile)
         content = write_3mf([item])
         if content not in self._known:
             at_mm = np.array(item.translation_mm)
@@ -63,8 +63,8 @@ class TrialSlicer:
 
     def _measured(self, content: bytes, at_mm: Float, apart: Sequence[Manifold]) -> Weighed:
         from printprep.gcode.measure import measure_gcode
+        from printprep.gcode.stability import stability_of_print
         from printprep.slicer.prusa_ini import profile_settings
-        from printprep.verify.rules import standing
 
         with tempfile.TemporaryDirectory(prefix="printprep-") as name:
             file, gcode = Path(name) / "part.3mf", Path(name) / "part.gcode"
@@ -75,7 +75,7 @@ class TrialSlicer:
         mm3 = printed.volume_mm3 / printed.mass_g
         moments, stabilities = [], []
         for body in printed.bodies or (printed,):
-            found = standing(body)
+            found = stability_of_print(body)
             centre = np.array(found.centre_of_mass_mm) - at_mm
             moments.append(body.mass_g * mm3 * np.array([1.0, *centre]))
             x, y, z = centre.tolist()
