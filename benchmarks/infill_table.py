@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from printprep.infill.test_print import TrialSlicer, Weighed
 from rows import catalogue, markdown_lines
 from verify_table import MODELS
 
@@ -27,6 +26,7 @@ from printprep.cavity.carve import make_part
 from printprep.errors import ToolError
 from printprep.gcode.measure import measure_gcode
 from printprep.gcode.stability import tilt_as_printed
+from printprep.infill.trial_print import TrialSlicer, Weighed
 from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
 from printprep.slicer.process import Slicer, find_slicer

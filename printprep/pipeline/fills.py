@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
-from printprep.output.limits import check_infill_output
 
 if TYPE_CHECKING:
     from printprep.grid.depth import Depths
@@ -83,6 +82,12 @@ def _check_infill(profile: Profile, options: FillOptions) -> None:
     check_infill(profile, objective=options.objective, self_support=options.self_support is True)
 
 
+def _only_3mf(suffix: str, slicer: SlicerName) -> None:
+    from printprep.output.limits import check_infill_output
+
+    check_infill_output(suffix, slicer)
+
+
 def _run_infill(prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch) -> Filled:
     from printprep.pipeline.infill import fill_with_infill
 
@@ -118,7 +123,7 @@ FILLS: dict[str, Fill] = {
             "(filament and 3MF only)",
             solid=False,
             check=_check_infill,
-            check_output=check_infill_output,
+            check_output=_only_3mf,
             run=_run_infill,
             estimate_mm3=_estimate_infill,
         ),

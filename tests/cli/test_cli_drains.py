@@ -9,6 +9,7 @@ import pytest
 from closed_form_parts import hollow_result
 
 from printprep.cli.run import run
+from printprep.profiles import load_profile
 from printprep.types import Drain, Drainage
 
 DRAINS = Drainage(
@@ -48,7 +49,7 @@ def handed(monkeypatch, tmp_path):
 )
 def test_options_change_the_profile(handed, options, keys):
     assert run(f"hollow m.stl -p resin-standard {options}".split()) == 0
-    assert handed["overrides"] == keys
+    assert handed["profile"] == load_profile("resin-standard", keys)
 
 
 @pytest.mark.parametrize(

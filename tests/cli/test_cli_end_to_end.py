@@ -78,5 +78,5 @@ def test_a_lean_out_of_reach_is_an_error_finding_and_still_a_part(workshop: Path
     (workshop / "column.3mf").unlink()
     stopped = program(*line, "--fail-on", "error", folder=workshop)
     assert stopped.returncode == 1
-    assert "Nothing written" in stopped.stdout
+    assert "Not written" in stopped.stdout
     assert not (workshop / "column.3mf").exists()

@@ -81,10 +81,10 @@ def test_a_print_that_tips_is_warned_of_and_strictly_refused(gcode: Path, capsys
     gcode.write_text(tower(overhang=40.0))
     before = gcode.read_bytes()
     assert run(["hook", "--strict", str(gcode)]) == 1
-    assert "falls by itself" in capsys.readouterr().err
+    assert "falls over by itself" in capsys.readouterr().err
     assert gcode.read_bytes() == before
     assert run(["hook", str(gcode)]) == 0
-    assert "falls by itself" in capsys.readouterr().err
+    assert "falls over by itself" in capsys.readouterr().err
     assert notes_of(gcode)["stands"] == "no"
     assert notes_of(gcode)["findings"] == "printed-tilt"
 

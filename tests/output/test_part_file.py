@@ -99,10 +99,10 @@ def test_lib3mf_reads_it_strictly_without_a_warning(tmp_path: Path):
 
 class TestOutput:
     def test_unknown_suffix_is_usage(self, tmp_path: Path):
-        with pytest.raises(UsageError, match=r"\.step is no format") as caught:
+        with pytest.raises(UsageError, match=r"\.step is not a format") as caught:
             check_output(tmp_path / "part.step")
         assert ".3mf" in caught.value.hint
-        with pytest.raises(UsageError, match="without suffix"):
+        with pytest.raises(UsageError, match="without a suffix"):
             check_output(tmp_path / "part")
 
     def test_missing_folder(self, tmp_path: Path):
