@@ -21,7 +21,7 @@ import numpy as np
 import torch
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests" / "density"))
+sys.path.insert(0, str(ROOT / "tests" / "paper"))
 
 from paper_models import voxelize  # noqa: E402
 from paper_reference import run_autograd  # noqa: E402

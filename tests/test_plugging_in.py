@@ -49,9 +49,7 @@ def test_a_fourth_process_runs_through_every_room(monkeypatch, tower, tmp_path, 
 def test_a_sealed_cavity_is_told_in_the_process_own_words(monkeypatch):
     monkeypatch.setitem(PROCESSES, "wax", WAX)
     settings = load_profile("resin-standard", {"process": "wax"})
-    (found,) = [
-        f for f in run_rules(context(hollow_box(30, 2)), settings) if f.rule == "sealed-cavity"
-    ]
+    found = {item.rule: item for item in run_rules(context(hollow_box(30, 2)), settings)}
     assert "of wax" in found["sealed-cavity"].message
     assert found["sealed-cavity"].severity == "error"
 
