@@ -23,7 +23,7 @@ from manifold3d import Manifold
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
-from dev_rooms import room_of
+from dev_hollowable import hollowable_of
 from rows import catalogue, markdown_lines
 from support_inside import support_inside_g
 
@@ -87,7 +87,7 @@ def measure(
     path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool
 ) -> dict[str, Any]:
     """One row of the table."""
-    solid, hollowable_volume = room_of(path, up, size_mm, profile)
+    solid, hollowable_volume = hollowable_of(path, up, size_mm, profile)
     if hollowable_volume.is_empty():
         return {"model": path.stem, "room_cm3": 0.0}
     wall, cpu = time.perf_counter(), time.process_time()
