@@ -114,7 +114,7 @@ class Program:
         """The lightest filling of every body for one base."""
         volume, bound = 0.0, 0.0
         parts = []
-        for cells, section, fixed in self.standing(base):
+        for cells, section, fixed in self.bodies_on_base(base):
             voxels, pool = self._pool(cells)
             fixed = fixed - pool.moments.sum(axis=1)
             contact = contact_of(section)
@@ -149,7 +149,7 @@ class Program:
         return np.stack(
             [
                 moments - self._pool(cells)[1].moments.sum(axis=1)
-                for cells, _, moments in self.standing(base)
+                for cells, _, moments in self.bodies_on_base(base)
             ]
         )
 
@@ -200,7 +200,9 @@ class Program:
             part.solution is not None and part.solution.plane is None for part in choice.parts
         )
 
-    def standing(self, base: Base | None) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
+    def bodies_on_base(
+        self, base: Base | None
+    ) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
         """The bodies that stand apart with a base: which of the solid's, section, moments."""
         from manifold3d import CrossSection
 

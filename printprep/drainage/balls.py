@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.drainage.space import Dexels
+from printprep.drainage.dexels import Dexels
 from printprep.grid.grid import block_around, points_mm
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
-    from printprep.drainage.space import Space
+    from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.grid.distance import Surface
 
 # Clearance on the grid alone is right to this many cells; nearer the radius it is measured.
@@ -40,11 +40,11 @@ class Balls:
     body: Int
 
 
-def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
+def balls_in(voxelized: VoxelizedPart, surface: Surface, radius_mm: float) -> Balls:
     """The balls of a radius that fit in a part's void, whose surface is given."""
     from scipy.ndimage import distance_transform_edt, generate_binary_structure, label
 
-    grid, void = space.grid, space.void
+    grid, void = voxelized.grid, voxelized.void
     nothing = np.zeros(0, dtype=np.int64)
     if not void.any():
         dexels = Dexels(nothing, np.zeros(0), np.zeros(0))
@@ -57,7 +57,7 @@ def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
     index = np.ravel_multi_index(tuple(at.T), grid.shape)
     clearance[unsure] = surface.distance_mm(points_mm(grid, index))
     fits = inside & (clearance >= radius_mm)
-    number, dexels = _runs(space, block, clearance, fits, radius_mm)
+    number, dexels = _runs(voxelized, block, clearance, fits, radius_mm)
     count = len(dexels.column)
     if not count:
         every = np.full(int(void.sum()), -1, dtype=np.int64)
@@ -75,14 +75,14 @@ def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
 
 
 def _runs(
-    space: Space,
+    voxelized: VoxelizedPart,
     block: tuple[slice, slice, slice],
     clearance: Float,
     fits: np.ndarray,
     radius_mm: float,
 ) -> tuple[Int, Dexels]:
     """Runs of cells of a column that fit, numbered; their ends lie between cells."""
-    grid = space.grid
+    grid = voxelized.grid
     pitch = grid.pitch_mm
     before = np.zeros_like(fits)
     before[:, :, 1:] = fits[:, :, :-1]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from printprep.drainage.channel import bored
-from printprep.drainage.place import Drained, Hole, drained
-from printprep.drainage.space import around
+from printprep.drainage.drain_cavities import Drained, drain_cavities
+from printprep.drainage.driller import Hole
+from printprep.drainage.voxelized_part import voxelize
 from printprep.mesh.quantize import quantized
 from printprep.types import Drain, Drainage, Part
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float
-    from printprep.drainage.space import Space
+    from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.profiles import Profile
     from printprep.types import Base
 
@@ -36,7 +37,7 @@ class Drainer:
         self.bores = Manifold()
         self.filled = Manifold()
         self._holes: tuple[Hole, ...] = ()
-        self._space: tuple[Base | None, Space] | None = None
+        self._space: tuple[Base | None, VoxelizedPart] | None = None
 
     @property
     def taken_mm3(self) -> float:
@@ -47,7 +48,7 @@ class Drainer:
         """The part with its cavities drained."""
         from manifold3d import Manifold, OpType
 
-        found = drained(
+        found = drain_cavities(
             part.outside,
             part.cavities,
             diameter_mm=self.diameter_mm,
@@ -55,7 +56,7 @@ class Drainer:
             wall_mm=self.profile.wall_mm,
             min_feature_mm=self.profile.min_feature_mm,
             known=self._holes,
-            space=self._around(part),
+            voxelized=self._around(part),
         )
         self._holes = found.holes
         self.bores = _united([bored(hole.channel) for hole in found.holes])
@@ -73,10 +74,10 @@ class Drainer:
             _drainage(found),
         )
 
-    def _around(self, part: Part) -> Space:
+    def _around(self, part: Part) -> VoxelizedPart:
         """The outside on a grid: it changes only with the base."""
         if self._space is None or self._space[0] is not part.base:
-            self._space = part.base, around(part.outside, self.diameter_mm)
+            self._space = part.base, voxelize(part.outside, self.diameter_mm)
         return self._space[1]
 
 

@@ -16,22 +16,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.carve import cavities_of
 from printprep.drainage.balls import balls_in
-from printprep.drainage.channel import Channel, bored
-from printprep.drainage.fill import filling
+from printprep.drainage.channel import Channel
+from printprep.drainage.exact_channel import channel_along
+from printprep.drainage.fill_undrained import filling
+from printprep.drainage.hole_candidates import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
 from printprep.drainage.pools import Pools
-from printprep.drainage.probe import channel_along
 from printprep.drainage.residual_pools import residual_pools
-from printprep.drainage.search import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
-from printprep.drainage.space import Space, around, hollowed
+from printprep.drainage.voxelized_part import VoxelizedPart
 from printprep.grid.distance import Surface
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float, Int
-    from printprep.drainage.search import Candidate, Role
+    from printprep.drainage.hole_candidates import Candidate, Role
 
 # A pool that holds less than this, or than this share of all cavities, is filled: a hole would cost
 # more looks than it saves.
@@ -67,61 +66,12 @@ class Hole:
     cavity: int
 
 
-@dataclass(frozen=True, eq=False)
-class Drained:
-    """Cavities with what cannot drain filled, and the holes that open them.
-
-    cavities : positive solids, largest first;  holes : outlets first, cavity by cavity.
-    filled_mm3 : what was filled of the cavities that are left.
-    closed_mm3 : volumes of the cavities that no hole of this size opens, filled whole.
-    """
-
-    cavities: tuple[Manifold, ...]
-    holes: tuple[Hole, ...]
-    filled_mm3: float
-    closed_mm3: tuple[float, ...]
-
-
-def drained(
-    outside: Manifold,
-    cavities: Sequence[Manifold],
-    *,
-    diameter_mm: float,
-    count_of: Callable[[float], int],
-    wall_mm: float,
-    min_feature_mm: float,
-    known: Sequence[Hole] = (),
-    space: Space | None = None,
-) -> Drained:
-    """Drain the cavities of a part.
-
-    Parameters
-    ----------
-    outside : the part without its cavities, on the plate.
-    diameter_mm : of the holes;  count_of : holes for a cavity of so many mm³, at least.  With two
-        and more one of them at least is a vent; pools get outlets of their own.
-    known : holes of a part like this one, kept where they still fit.
-    space : the outside on a grid, where it is at hand (:func:`printprep.drainage.space.around`).
-    """
-    from manifold3d import Manifold, OpType
-
-    if not cavities:
-        return Drained((), (), 0.0, ())
-    void = Manifold.batch_boolean(list(cavities), OpType.Add)
-    space = around(outside, diameter_mm) if space is None else space
-    driller = Driller(hollowed(space, void), outside, void, diameter_mm, wall_mm)
-    driller.keep(known)
-    driller.drill_outlets()
-    driller.drill_vents(count_of)
-    return _assigned(driller.drilled, cavities_of(driller.left_of(void), min_feature_mm), cavities)
-
-
 class Driller:
     """Finds one hole after another in a part; ``drilled`` are those found so far."""
 
     def __init__(
         self,
-        space: Space,
+        voxelized: VoxelizedPart,
         outside: Manifold,
         void: Manifold,
         diameter_mm: float,
@@ -131,11 +81,11 @@ class Driller:
         self.radius_mm = diameter_mm / 2
         self.wall_mm = wall_mm
         self.clearance_mm = wall_mm / 2
-        self.space = space
+        self.voxelized = voxelized
         self.outside = Surface.of(outside)
         self.void = Surface.of(void)
-        self.rests = Pools(balls_in(space, self.void, self.radius_mm), space.grid)
-        self.pools = Pools(balls_in(space, self.void, PASSES * self.radius_mm), space.grid)
+        self.rests = Pools(balls_in(voxelized, self.void, self.radius_mm), voxelized.grid)
+        self.pools = Pools(balls_in(voxelized, self.void, PASSES * self.radius_mm), voxelized.grid)
         self._pool_of_rest = self.pools.holding(self.rests.dexels)
         self.drilled: list[tuple[Role, Channel]] = []
 
@@ -182,12 +132,12 @@ class Driller:
     def left_of(self, void: Manifold) -> Manifold:
         """The void without what does not drain: filled where balls stay, then where drops do."""
         channels = self._channels("outlet")
-        runs = balls_in(self.space, self.void, RUNS * self.radius_mm)
+        runs = balls_in(self.voxelized, self.void, RUNS * self.radius_mm)
         tops = np.maximum(
-            self.pools.tops_mm(channels), Pools(runs, self.space.grid).tops_mm(channels)
+            self.pools.tops_mm(channels), Pools(runs, self.voxelized.grid).tops_mm(channels)
         )
-        left = void - filling(self.space, tops)
-        return left - residual_pools(left, channels, FINE * self.space.grid.pitch_mm)
+        left = void - filling(self.voxelized, tops)
+        return left - residual_pools(left, channels, FINE * self.voxelized.grid.pitch_mm)
 
     def _channels(self, role: Role) -> list[Channel]:
         return [channel for other, channel in self.drilled if other == role]
@@ -239,7 +189,7 @@ class Driller:
 
     def _ways(self, balls: Float, extra_mm: Float, role: Role) -> tuple[Candidate, ...]:
         return ways_out(
-            self.space, balls, extra_mm, self.radius_mm, self.wall_mm, self.clearance_mm, role
+            self.voxelized, balls, extra_mm, self.radius_mm, self.wall_mm, self.clearance_mm, role
         )
 
     def _first_clean(self, ways: Sequence[Candidate]) -> Channel | None:
@@ -263,32 +213,3 @@ class Driller:
         return all(
             float(np.linalg.norm(mouth_mm - other.centre_mm)) >= least for _, other in self.drilled
         )
-
-
-def _assigned(
-    drilled: Sequence[tuple[Role, Channel]],
-    pieces: Sequence[Manifold],
-    before: Sequence[Manifold],
-) -> Drained:
-    """The pieces that a hole opens, with their holes."""
-    solids = [bored(channel) for _, channel in drilled]
-    kept: list[Manifold] = []
-    holes: list[Hole] = []
-    used: set[int] = set()
-    for piece in pieces:
-        opening = [
-            k for k, solid in enumerate(solids) if k not in used and (solid ^ piece).volume() > 0
-        ]
-        if not any(drilled[k][0] == "outlet" for k in opening):
-            continue
-        used.update(opening)
-        holes += [Hole(*drilled[k], len(kept)) for k in opening]
-        kept.append(piece)
-    closed = [
-        float(cavity.volume())
-        for cavity in before
-        if not any((cavity ^ piece).volume() > 0 for piece in kept)
-    ]
-    total = sum(cavity.volume() for cavity in before)
-    filled = total - sum(closed) - sum(piece.volume() for piece in kept)
-    return Drained(tuple(kept), tuple(holes), float(filled), tuple(closed))

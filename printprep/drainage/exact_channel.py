@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.drainage.channel import Channel, frame
-from printprep.drainage.search import LEAST_COSINE, LONGEST_MM
+from printprep.drainage.hole_candidates import LEAST_COSINE, LONGEST_MM
 
 if TYPE_CHECKING:
-    from printprep.drainage.search import Candidate
+    from printprep.drainage.hole_candidates import Candidate
     from printprep.grid.distance import Surface
 
 LINES = 24

@@ -2,7 +2,7 @@
 
 A channel begins at a ball of its diameter that fits in the cavity, so that what comes to the ball
 can follow it out.  Every ball and every direction is tried on the grid; the best are then measured
-exactly (:mod:`printprep.drainage.probe`).
+exactly (:mod:`printprep.drainage.exact_channel`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
     from printprep.drainage.pools import Pools
-    from printprep.drainage.space import Space
+    from printprep.drainage.voxelized_part import VoxelizedPart
 
 Role = Literal["outlet", "vent"]
 
@@ -98,7 +98,7 @@ def directions(role: Role) -> Float:
 
 
 def ways_out(
-    space: Space,
+    voxelized: VoxelizedPart,
     centres: Float,
     extra_mm: Float,
     radius_mm: float,
@@ -113,10 +113,10 @@ def ways_out(
     ways = directions(role)
     ball, way = (part.ravel() for part in np.indices((len(centres), len(ways))))
     start, axis = centres[ball], ways[way]
-    step = space.grid.pitch_mm / 2
+    step = voxelized.grid.pitch_mm / 2
     t = np.arange(0.0, LONGEST_MM, step)
     points = start[:, None] + t[None, :, None] * axis[:, None]
-    depth = space.depth_at(points.reshape(-1, 3)).reshape(len(ball), len(t))
+    depth = voxelized.depth_at(points.reshape(-1, 3)).reshape(len(ball), len(t))
     outside = depth < 0
     exits = np.where(outside.any(axis=1), outside.argmax(axis=1), len(t) - 1)
     index = np.arange(len(t))
@@ -136,36 +136,38 @@ def ways_out(
         within
         & outside.any(axis=1)
         & clear.any(axis=1)
-        & space.open[space.index(out)]
+        & voxelized.open[voxelized.index(out)]
         & (lowest >= clearance_mm)
     )
     start, axis, mouth = start[good], axis[good], mouth[good]
     cost = (
         extra_mm[ball[good]]
         + RUN_MM * t[exits[good]]
-        + (1 - RUN_MM) * _in_material_mm(space, start, axis, t[exits[good]], step)
-        + _looks_mm(space, mouth, radius_mm)
-        - SIGHT_MM * _sight_mm(space, start, axis)
+        + (1 - RUN_MM) * _in_material_mm(voxelized, start, axis, t[exits[good]], step)
+        + _looks_mm(voxelized, mouth, radius_mm)
+        - SIGHT_MM * _sight_mm(voxelized, start, axis)
     )
     order = np.argsort(cost, kind="stable")
     return tuple(Candidate(start[k], axis[k], mouth[k], float(cost[k])) for k in order)
 
 
-def _in_material_mm(space: Space, start: Float, axis: Float, exit_mm: Float, step: float) -> Float:
+def _in_material_mm(
+    voxelized: VoxelizedPart, start: Float, axis: Float, exit_mm: Float, step: float
+) -> Float:
     """(n,) how much of each way lies in material."""
     t = np.arange(0.0, LONGEST_MM, step)
     points = start[:, None] + t[None, :, None] * axis[:, None]
-    void = space.void[space.index(points.reshape(-1, 3))].reshape(len(start), len(t))
+    void = voxelized.void[voxelized.index(points.reshape(-1, 3))].reshape(len(start), len(t))
     result: Float = ((~void) & (t < exit_mm[:, None])).sum(axis=1) * step
     return result
 
 
-def _looks_mm(space: Space, mouth: Float, radius_mm: float) -> Float:
+def _looks_mm(voxelized: VoxelizedPart, mouth: Float, radius_mm: float) -> Float:
     """(n,) what a mouth's place costs: looking up, on a bulge, on relief."""
-    step = space.grid.pitch_mm
+    step = voxelized.grid.pitch_mm
     gradient = np.column_stack(
         [
-            space.depth_at(mouth + step * unit) - space.depth_at(mouth - step * unit)
+            voxelized.depth_at(mouth + step * unit) - voxelized.depth_at(mouth - step * unit)
             for unit in np.eye(3)
         ]
     )
@@ -174,11 +176,11 @@ def _looks_mm(space: Space, mouth: Float, radius_mm: float) -> Float:
     first = np.cross(aside, normal)
     first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-9)
     second = np.cross(normal, first)
-    level = space.depth_at(mouth)
+    level = voxelized.depth_at(mouth)
     ring = []
     for angle in np.arange(8) * np.pi / 4:
         aside = np.cos(angle) * first + np.sin(angle) * second
-        ring.append(space.depth_at(mouth + 1.5 * radius_mm * aside) - level)
+        ring.append(voxelized.depth_at(mouth + 1.5 * radius_mm * aside) - level)
     around = np.array(ring)
     result: Float = (
         UPWARD_MM * (1 + normal[:, 2]) / 2
@@ -188,11 +190,11 @@ def _looks_mm(space: Space, mouth: Float, radius_mm: float) -> Float:
     return result
 
 
-def _sight_mm(space: Space, start: Float, axis: Float) -> Float:
+def _sight_mm(voxelized: VoxelizedPart, start: Float, axis: Float) -> Float:
     """(n,) how far one sees into the cavity through the channel."""
-    step = space.grid.pitch_mm
+    step = voxelized.grid.pitch_mm
     t = np.arange(0.0, FULL_SIGHT_MM, step)
     points = start[:, None] - t[None, :, None] * axis[:, None]
-    void: Bool = space.void[space.index(points.reshape(-1, 3))].reshape(len(start), len(t))
+    void: Bool = voxelized.void[voxelized.index(points.reshape(-1, 3))].reshape(len(start), len(t))
     result: Float = np.logical_and.accumulate(void, axis=1).sum(axis=1) * step
     return result

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
     from printprep.drainage.balls import Balls
     from printprep.drainage.channel import Channel
-    from printprep.drainage.space import Dexels
+    from printprep.drainage.dexels import Dexels
     from printprep.types import Grid
 
 # Floors fall toward an outlet by this much of the way there: about half a degree.

@@ -14,8 +14,8 @@ import numpy as np
 
 from printprep.cavity.surface import isosurface
 from printprep.drainage.balls import Balls
+from printprep.drainage.dexels import Dexels, dexels_of
 from printprep.drainage.pools import LEAST_MM, SLOPE, Pools
-from printprep.drainage.space import Dexels, dexels_of
 from printprep.grid.distance import DepthField
 from printprep.grid.grid import cropped
 from printprep.types import Grid

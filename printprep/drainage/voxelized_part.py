@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.drainage.dexels import dexels_of, filled
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -28,20 +27,7 @@ MARGIN_CELLS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Dexels:
-    """The stretches of a solid along the upright lines through a grid's columns.
-
-    column : (n,) index i · ny + j of the column;  low_mm, high_mm : (n,) ends.
-    Sorted by column, then upward.
-    """
-
-    column: Int
-    low_mm: Float
-    high_mm: Float
-
-
-@dataclass(frozen=True, eq=False)
-class Space:
+class VoxelizedPart:
     """A part's material, void and surroundings on one grid; arrays of shape ``grid.shape``.
 
     void : bool, cells of the cavities.
@@ -68,7 +54,7 @@ class Space:
         return result
 
 
-def around(outside: Manifold, diameter_mm: float) -> Space:
+def voxelize(outside: Manifold, diameter_mm: float) -> VoxelizedPart:
     """A part without cavities on a grid fine enough for holes of a diameter."""
     from scipy.ndimage import distance_transform_edt
 
@@ -82,22 +68,12 @@ def around(outside: Manifold, diameter_mm: float) -> Space:
     body = filled(dexels_of(outside, grid), grid)
     deep = distance_transform_edt(body) - distance_transform_edt(~body)
     depth = ((deep - 0.5 * np.sign(deep)) * pitch).astype(np.float32)
-    return Space(grid, np.zeros_like(body), depth, open_air(~body))
+    return VoxelizedPart(grid, np.zeros_like(body), depth, open_air(~body))
 
 
-def hollowed(space: Space, void: Manifold) -> Space:
+def with_cavities(voxelized: VoxelizedPart, void: Manifold) -> VoxelizedPart:
     """The same part with cavities, which lie inside it."""
-    return replace(space, void=filled(dexels_of(void, space.grid), space.grid))
-
-
-def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:
-    """A solid along the lines through a grid's columns, a hair beside their centres."""
-    nx, ny, _ = grid.shape
-    x, y = (grid.origin_mm[axis] + grid.pitch_mm * np.arange(grid.shape[axis]) for axis in (0, 1))
-    lines = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(nx * ny, 2)
-    lines += np.random.default_rng(0).uniform(-1e-4, 1e-4, lines.shape) * grid.pitch_mm
-    found = cross(*arrays(manifold), lines)
-    return Dexels(found.column[::2], found.z_mm[::2], found.z_mm[1::2])
+    return replace(voxelized, void=filled(dexels_of(void, voxelized.grid), voxelized.grid))
 
 
 def open_air(empty: Bool) -> Bool:
@@ -118,13 +94,3 @@ def open_air(empty: Bool) -> Bool:
         below = reached[piece]
         result[:, :, layer] = below
     return result
-
-
-def filled(dexels: Dexels, grid: Grid) -> Bool:
-    """Cells whose centre lies in a dexel."""
-    nx, ny, nz = grid.shape
-    ends = np.zeros((nx * ny, nz + 1), dtype=np.int32)
-    for z_mm, step in ((dexels.low_mm, 1), (dexels.high_mm, -1)):
-        first = np.ceil((z_mm - grid.origin_mm[2]) / grid.pitch_mm).astype(int)
-        np.add.at(ends, (dexels.column, np.clip(first, 0, nz)), step)
-    return (np.cumsum(ends, axis=1)[:, :nz] > 0).reshape(grid.shape)

@@ -21,9 +21,9 @@ voxel (i, j, k) is at (index + 0.5) / 64 − 0.5 in the generator's z-up frame [
 (x, z, −y), and ``hollowed.cavity.turned_y_up()`` follows it there.
 """
 
-from printprep.generators.form import GRID
 from printprep.generators.hollow import VoxelHollow, hollow
 from printprep.generators.read import read_voxels
 from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.generators.voxel_arrays import GRID
 
 __all__ = ["GRID", "VoxelHollow", "VoxelSurface", "hollow", "read_voxels", "surface_of"]

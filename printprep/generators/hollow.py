@@ -10,10 +10,10 @@ import numpy as np
 
 from printprep.arrays import Bool, Float
 from printprep.errors import UsageError
-from printprep.generators.form import occupancy
 from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.generators.voxel_arrays import occupancy
 from printprep.paper.domain import (
-    Filling,
+    FillRule,
     PaperDomain,
     ShellRule,
     build_domain,
@@ -59,7 +59,7 @@ def hollow(
     batch: int = 0,
     device: str = "cpu",
     shell: ShellRule = "auto",
-    filling: Filling = "flood",
+    filling: FillRule = "flood",
 ) -> VoxelHollow:
     """Fill the solid that voxels describe, optimize its interior, and hand the material back.
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from printprep.generators.form import occupancy
 from printprep.generators.read import read_voxels
 from printprep.generators.surface import surface_of
+from printprep.generators.voxel_arrays import occupancy
 from printprep.mesh.read import RawMesh
 from printprep.paper.domain import fill
 

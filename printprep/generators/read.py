@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from printprep.errors import InputError
-from printprep.generators.form import LIMIT_BYTES
+from printprep.generators.voxel_arrays import LIMIT_BYTES
 
 NAMES = ("coords", "coordinates", "voxels", "binary_voxel", "occupancy")
 """What the array is called in a file that holds several, in order of preference."""

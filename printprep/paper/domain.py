@@ -18,7 +18,7 @@ from printprep.arrays import Bool
 from printprep.errors import GeometryError, UsageError
 from printprep.paper.settings import PaperSettings
 
-Filling = Literal["flood", "slices"]
+FillRule = Literal["flood", "slices"]
 ShellRule = Literal["auto", "boundary", "occupied"]
 
 
@@ -53,7 +53,7 @@ def build_domain(
     settings: PaperSettings,
     *,
     shell: ShellRule = "auto",
-    filling: Filling = "flood",
+    filling: FillRule = "flood",
 ) -> PaperDomain:
     """Shell, interior and base layer of an occupancy.
 
@@ -93,7 +93,7 @@ def build_domain(
     return PaperDomain(solid, frozen, interior, base, interior | base, ground)
 
 
-def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
+def fill(occupied: Bool, filling: FillRule = "flood") -> Bool:
     """The solid O that a set of surface voxels encloses.
 
     Parameters

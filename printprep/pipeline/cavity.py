@@ -14,7 +14,7 @@ import numpy as np
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import isosurface
 from printprep.density.outcome import PaperSolver, density_of, paper_density
-from printprep.drainage.part import Drainer
+from printprep.drainage.drainer import Drainer
 from printprep.grid.distance import DepthField
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability

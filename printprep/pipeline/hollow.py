@@ -76,7 +76,7 @@ def hollow(
     from printprep.cavity.surface import cavity_surface
     from printprep.check import CheckContext, run_rules
     from printprep.density.program import Program
-    from printprep.drainage.part import Drainer
+    from printprep.drainage.drainer import Drainer
     from printprep.grid.depth import measure_depths
     from printprep.grid.domain import weigh_interior
     from printprep.infill.options import check_fill

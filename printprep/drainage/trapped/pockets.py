@@ -23,6 +23,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from printprep.drainage.trapped.cells import (
+    cells_of_each,
+    connected_pieces,
+    edge_cells,
+    spread_within,
+)
 from printprep.drainage.trapped.clearance import Clearance, space_around
 from printprep.drainage.trapped.flood import basins
 from printprep.grid.grid import block_around
@@ -131,10 +137,10 @@ class _Found:
 
 def _shut(space: Clearance, fits: Bool, radius_mm: float) -> list[_Found]:
     """What no ball leaves, whichever way the part is turned."""
-    empty, outside = _pieces(space.empty, diagonal=False)
-    room, free = _pieces(fits, diagonal=True)
-    small, small_free = _pieces(space.clearance_mm >= SMALL * radius_mm, diagonal=True)
-    way, way_free = _pieces(
+    empty, outside = connected_pieces(space.empty, diagonal=False)
+    room, free = connected_pieces(fits, diagonal=True)
+    small, small_free = connected_pieces(space.clearance_mm >= SMALL * radius_mm, diagonal=True)
+    way, way_free = connected_pieces(
         space.clearance_mm >= SMALL_OUT * radius_mm - space.grid.pitch_mm / 2, diagonal=True
     )
     shut = (room > 0) & (room != free)
@@ -147,9 +153,9 @@ def _shut(space: Clearance, fits: Bool, radius_mm: float) -> list[_Found]:
 
     seeds, count = label(shut | sealed, structure=np.ones((3, 3, 3)))
     seeds[room == free] = count + 1
-    owner = _nearest_within(space.empty, seeds)
+    owner = spread_within(space.empty, seeds)
     found = []
-    for _, cells in _members(owner, count):
+    for _, cells in cells_of_each(owner, count):
         if sealed.flat[cells].all():
             found.append(_Found("sealed", cells, True, 0.0))
         else:
@@ -168,7 +174,7 @@ def _way_out_mm(space: Clearance, cells: Int, free: Bool, radius_mm: float) -> f
     passes, stays = 0.0, radius_mm
     while stays - passes > WAY_OUT_MM / 2:
         middle = (passes + stays) / 2
-        pieces, _ = _pieces(near.room_for(middle) | out, diagonal=True)
+        pieces, _ = connected_pieces(near.room_for(middle) | out, diagonal=True)
         if len(np.intersect1d(pieces[inside & (pieces > 0)], pieces[out])):
             passes = middle
         else:
@@ -179,7 +185,7 @@ def _way_out_mm(space: Clearance, cells: Int, free: Bool, radius_mm: float) -> f
 def _pools(space: Clearance, room: Bool, radius_mm: float, least_mm3: float) -> list[_Found]:
     """What stays in a standing part although there is a way out."""
     pitch = space.grid.pitch_mm
-    flood = basins(room, _edge(room.shape), diagonal=True)
+    flood = basins(room, edge_cells(room.shape), diagonal=True)
     deep = [
         number
         for number, spill in enumerate(flood.spill.tolist())
@@ -191,10 +197,10 @@ def _pools(space: Clearance, room: Bool, radius_mm: float, least_mm3: float) -> 
     renumbered[deep] = np.arange(1, len(deep) + 1)
     seeds = renumbered[flood.basin][flood.pool]
     seeds[room & (seeds == 0)] = len(deep) + 1
-    owner = _nearest_within(space.empty, seeds)
+    owner = spread_within(space.empty, seeds)
     rooms = None
     found = []
-    for number, cells in _members(owner, len(deep)):
+    for number, cells in cells_of_each(owner, len(deep)):
         # The liquid's surface lies at the lowest point of the passage.
         surface = flood.spill[deep[number - 1]] - radius_mm / pitch
         wet = cells[cells % room.shape[2] < surface]
@@ -210,10 +216,10 @@ def _pools(space: Clearance, room: Bool, radius_mm: float, least_mm3: float) -> 
 def _enclosed(space: Clearance, room: Bool, radius_mm: float) -> Bool:
     """Cells of the ball's room that belong to spaces wider than their ways out."""
     widest, radius = float(space.clearance_mm.max()), LADDER * radius_mm
-    seeds, edge = np.zeros(room.shape, dtype=np.int32), _edge(room.shape)
+    seeds, edge = np.zeros(room.shape, dtype=np.int32), edge_cells(room.shape)
     while ENCLOSED * radius <= widest:
         # Beyond the edge there is all the room in the world.
-        pieces, free = _pieces((space.clearance_mm >= radius) | edge, diagonal=True)
+        pieces, free = connected_pieces((space.clearance_mm >= radius) | edge, diagonal=True)
         count = int(pieces.max())
         largest = np.zeros(count + 1, dtype=np.float32)
         inside = pieces > 0
@@ -224,74 +230,7 @@ def _enclosed(space: Clearance, room: Bool, radius_mm: float) -> Bool:
             seeds[pieces == free] = 2
             seeds[roomy[pieces]] = 1
         radius *= LADDER
-    return np.asarray(_nearest_within(room, seeds) == 1)
-
-
-def _edge(shape: tuple[int, ...]) -> Bool:
-    """The cells at the edge of a grid."""
-    edge = np.ones(shape, dtype=bool)
-    edge[1:-1, 1:-1, 1:-1] = False
-    return edge
-
-
-def _pieces(cells: Bool, *, diagonal: bool) -> tuple[Int32, int]:
-    """Connected pieces, and the number of the one that is outside."""
-    from scipy.ndimage import generate_binary_structure, label
-
-    pieces, _ = label(cells, structure=generate_binary_structure(3, 3 if diagonal else 1))
-    return pieces, int(pieces[0, 0, 0])
-
-
-def _nearest_within(cells: Bool, seeds: Int32) -> Int32:
-    """Every cell that a seed reaches within ``cells``, with the number of the first to do so."""
-    owner = np.where(cells, seeds, 0).ravel()
-    allowed = cells.ravel()
-    nx, ny, nz = cells.shape
-    steps = (ny * nz, -ny * nz, nz, -nz, 1, -1)
-    front = _rim(owner.reshape(cells.shape), cells)
-    while len(front):
-        reached = []
-        for axis, step in enumerate(steps):
-            there = front + step
-            inside = _same_line(front, there, axis // 2, (nx, ny, nz))
-            source, target = front[inside], there[inside]
-            fresh = allowed[target] & (owner[target] == 0)
-            owner[target[fresh]] = owner[source[fresh]]
-            reached.append(target[fresh])
-        front = np.unique(np.concatenate(reached))
-    return owner.reshape(cells.shape)
-
-
-def _rim(owner: Int32, cells: Bool) -> Int:
-    """Owned cells with a neighbour that is allowed and not owned."""
-    waiting = cells & (owner == 0)
-    beside = np.zeros(cells.shape, dtype=bool)
-    for axis in range(3):
-        first = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
-        last = tuple(slice(None, -1) if a == axis else slice(None) for a in range(3))
-        beside[first] |= waiting[last]
-        beside[last] |= waiting[first]
-    return np.flatnonzero(beside & (owner > 0))
-
-
-def _same_line(here: Int, there: Int, axis: int, shape: tuple[int, int, int]) -> Bool:
-    """Which steps along an axis of a flat index stay within the grid."""
-    _, ny, nz = shape
-    inside: Bool = (there >= 0) & (there < shape[0] * ny * nz)
-    if axis == 1:
-        inside &= here // (ny * nz) == there // (ny * nz)
-    elif axis == 2:
-        inside &= here // nz == there // nz
-    return inside
-
-
-def _members(owner: Int32, count: int) -> list[tuple[int, Int]]:
-    """The cells of every number from 1 to ``count`` that has any."""
-    flat = owner.ravel()
-    mine = np.flatnonzero((flat > 0) & (flat <= count))
-    order = np.argsort(flat[mine], kind="stable")
-    numbers, starts = np.unique(flat[mine][order], return_index=True)
-    return list(zip(numbers.tolist(), np.split(mine[order], starts[1:]), strict=True))
+    return np.asarray(spread_within(room, seeds) == 1)
 
 
 def _mostly(flags: Bool) -> bool:
