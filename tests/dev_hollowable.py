@@ -14,7 +14,9 @@ from printprep.mesh.repair import repair
 from printprep.profiles import Profile
 
 
-def hollowable_of(path: Path, up: str, size_mm: float, profile: Profile) -> tuple[Manifold, Manifold]:
+def hollowable_of(
+    path: Path, up: str, size_mm: float, profile: Profile
+) -> tuple[Manifold, Manifold]:
     """The repaired solid, and its hollowable volume: all that lies deeper than the wall."""
     solid = repair(place(read_mesh(path), up=up, size_mm=size_mm))
     depths = measure_depths(

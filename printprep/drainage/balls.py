@@ -1,8 +1,8 @@
-"""Where the centre of a ball can be in a void: the places that a hole of its width can drain.
+"""Find where the centre of a ball fits in a void: the places that a hole of its width can drain.
 
 Clearance is the distance to the void's surface.  It is exact where it decides, near the ball's
-radius, so a ball at rest is found to a few hundredths of a millimetre between two cells of its
-column.  Between columns it is not looked for: a neck hardly wider than the ball counts as closed.
+radius: a ball at rest is placed to a few hundredths of a millimetre between two cells of its
+column.  Nothing is searched between columns: a neck hardly wider than the ball counts as closed.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.grid.distance import Surface
 
-# Clearance on the grid alone is right to this many cells; nearer the radius it is measured.
+# Clearance on the grid alone is right to this many cells; nearer to the radius it is measured.
 UNSURE_CELLS = 1.5
 
 
 @dataclass(frozen=True, eq=False)
 class Balls:
-    """The centres of balls of a radius that fit, as dexels over the grid's columns.
+    """Where the centres of balls of one radius fit, as dexels over the grid's columns.
 
-    volume_mm3 : (n,) of the void nearest to each dexel, which drains with it.
-    nearest : (k,) for every void cell, in C order, the dexel nearest to it;  −1 without any.
-    body : (n,) which connected part of the void each dexel lies in.
+    volume_mm3 : (n,) mm³, void nearest to each dexel, which drains with it.
+    nearest : (k,) for every void cell, in C order, the dexel nearest to it;  −1 for none.
+    body : (n,) the connected part of the void that each dexel lies in.
     """
 
     radius_mm: float
@@ -41,7 +41,10 @@ class Balls:
 
 
 def balls_in(voxelized: VoxelizedPart, surface: Surface, radius_mm: float) -> Balls:
-    """The balls of a radius that fit in a part's void, whose surface is given."""
+    """Find the balls of one radius that fit in a part's void.
+
+    surface : of the void.
+    """
     from scipy.ndimage import distance_transform_edt, generate_binary_structure, label
 
     grid, void = voxelized.grid, voxelized.void
@@ -65,7 +68,7 @@ def balls_in(voxelized: VoxelizedPart, surface: Surface, radius_mm: float) -> Ba
     where = distance_transform_edt(~fits, return_distances=False, return_indices=True)
     nearest = number[tuple(where)][inside].astype(np.int64)
     piece, _ = label(inside, structure=generate_binary_structure(3, 3))
-    # A void that holds no ball is nobody's
+    # A void that holds no ball belongs to no dexel
     body = np.zeros(count, dtype=np.int64)
     body[number[fits]] = piece[fits]
     nearest = np.where(body[nearest] == piece[inside], nearest, -1)
@@ -81,7 +84,11 @@ def _runs(
     fits: np.ndarray,
     radius_mm: float,
 ) -> tuple[Int, Dexels]:
-    """Runs of cells of a column that fit, numbered; their ends lie between cells."""
+    """Number the runs of fitting cells in each column, and find their ends between cells.
+
+    clearance : (a, b, c) mm, fits : (a, b, c) bool, both of the block.
+    Returns (a, b, c) the run's number, valid where a cell fits, and the runs as dexels.
+    """
     grid = voxelized.grid
     pitch = grid.pitch_mm
     before = np.zeros_like(fits)
@@ -94,6 +101,7 @@ def _runs(
     _, _, high = np.nonzero(ends)
 
     def end(k: Int, way: int) -> Float:
+        """(n,) mm, heights where runs end that reach to cells k (n,), upward or downward."""
         here, there = clearance[i, j, k], clearance[i, j, k + way]
         share = (here - radius_mm) / np.maximum(here - there, 1e-9)
         z = grid.origin_mm[2] + pitch * (k + block[2].start)

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Dexels:
-    """The stretches of a solid along the upright lines through a grid's columns.
+    """The stretches of a solid along the vertical lines through a grid's columns.
 
-    column : (n,) index i · ny + j of the column;  low_mm, high_mm : (n,) ends.
+    column : (n,) index i · ny + j of the column;  low_mm, high_mm : (n,) mm, ends.
     Sorted by column, then upward.
     """
 
@@ -31,7 +31,7 @@ class Dexels:
 
 
 def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:
-    """A solid along the lines through a grid's columns, a hair beside their centres."""
+    """Cut a solid along the lines through a grid's columns, just beside their centres."""
     nx, ny, _ = grid.shape
     x, y = (grid.origin_mm[axis] + grid.pitch_mm * np.arange(grid.shape[axis]) for axis in (0, 1))
     lines = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(nx * ny, 2)
@@ -41,7 +41,7 @@ def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:
 
 
 def filled(dexels: Dexels, grid: Grid) -> Bool:
-    """Cells whose centre lies in a dexel."""
+    """(nx, ny, nz) bool, the cells whose centres lie in a dexel."""
     nx, ny, nz = grid.shape
     ends = np.zeros((nx * ny, nz + 1), dtype=np.int32)
     for z_mm, step in ((dexels.low_mm, 1), (dexels.high_mm, -1)):

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Drained:
-    """Cavities with what cannot drain filled, and the holes that open them.
+    """Drained cavities, and the holes that open them.
 
     cavities : positive solids, largest first;  holes : outlets first, cavity by cavity.
-    filled_mm3 : what was filled of the cavities that are left.
-    closed_mm3 : volumes of the cavities that no hole of this size opens, filled whole.
+    filled_mm3 : volume filled in the cavities that are left.
+    closed_mm3 : volumes of the cavities that no hole of this size opens; they are filled whole.
     """
 
     cavities: tuple[Manifold, ...]
@@ -54,9 +54,9 @@ def drain_cavities(
     Parameters
     ----------
     outside : the part without its cavities, on the plate.
-    diameter_mm : of the holes;  count_of : holes for a cavity of so many mm³, at least.  With two
-        and more one of them at least is a vent; pools get outlets of their own.
-    known : holes of a part like this one, kept where they still fit.
+    diameter_mm : of the holes;  count_of : least number of holes for a cavity of so many mm³.  Of
+        two or more, at least one is a vent; every pool gets an outlet of its own.
+    known : holes of a similar part, kept where they still fit.
     voxelized : the outside on a grid, where it is at hand (see `voxelized_part.voxelize`).
     """
     from manifold3d import Manifold, OpType
@@ -77,7 +77,10 @@ def _assigned(
     pieces: Sequence[Manifold],
     before: Sequence[Manifold],
 ) -> Drained:
-    """The pieces that a hole opens, with their holes."""
+    """Keep the pieces that an outlet opens, with their holes.
+
+    before : the cavities before anything was filled.
+    """
     solids = [bored(channel) for _, channel in drilled]
     kept: list[Manifold] = []
     holes: list[Hole] = []

@@ -1,4 +1,4 @@
-"""Drains in a part: what ``hollow`` asks for, from one solve to the next."""
+"""The drainer: drains the parts that ``hollow`` makes, one solve after another."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 
 class Drainer:
-    """Drains one part after another of the same solid, and keeps the holes that still serve.
+    """Drains one part after another of the same solid, and keeps the holes that still fit.
 
-    bores : what the holes of the last part take, as solids;  filled : what was filled in it.
+    bores : the solids that the holes of the last part remove;  filled : the filling of its
+    cavities.
     """
 
     def __init__(self, profile: Profile) -> None:
@@ -41,11 +42,11 @@ class Drainer:
 
     @property
     def taken_mm3(self) -> float:
-        """What holes and filling change of the part."""
+        """Volume of the last part's holes and filling."""
         return float(self.bores.volume() + self.filled.volume())
 
     def drain(self, part: Part) -> tuple[Part, Drainage]:
-        """The part with its cavities drained."""
+        """Drain the cavities of a part."""
         from manifold3d import Manifold, OpType
 
         found = drain_cavities(
@@ -75,7 +76,7 @@ class Drainer:
         )
 
     def _around(self, part: Part) -> VoxelizedPart:
-        """The outside on a grid: it changes only with the base."""
+        """The part's outside on a grid; it changes only with the base."""
         if self._space is None or self._space[0] is not part.base:
             self._space = part.base, voxelize(part.outside, self.diameter_mm)
         return self._space[1]
@@ -104,5 +105,6 @@ def _drain(hole: Hole) -> Drain:
 
 
 def _place(point: Float) -> tuple[float, float, float]:
+    """A point (3,) as plain numbers."""
     x, y, z = (float(value) for value in point)
     return x, y, z

@@ -1,11 +1,4 @@
-"""Drain a part: outlets where liquid would stand, vents where air has to come in, and the rest
-filled.
-
-Upright on its plate, as it is printed.  Every pool that holds enough gets an outlet at its lowest
-place that the hole's own ball reaches; what no outlet drains is filled, with floors that fall
-toward an outlet.  So no layer closes off a region from the air: nothing is trapped, and nothing
-sucks at the vat.
-"""
+"""The driller: finds outlets where liquid stands and vents where air must come in."""
 
 from __future__ import annotations
 
@@ -18,7 +11,7 @@ import numpy as np
 
 from printprep.drainage.balls import balls_in
 from printprep.drainage.channel import Channel
-from printprep.drainage.exact_channel import channel_along
+from printprep.drainage.exact_channel import exact_channel
 from printprep.drainage.fill_undrained import filling
 from printprep.drainage.hole_candidates import AWAY_MM, DEPTH_MM, FILLED_MM, balls_at_rest, ways_out
 from printprep.drainage.pools import Pools
@@ -32,34 +25,34 @@ if TYPE_CHECKING:
     from printprep.arrays import Float, Int
     from printprep.drainage.hole_candidates import Candidate, Role
 
-# A pool that holds less than this, or than this share of all cavities, is filled: a hole would cost
-# more looks than it saves.
+# A pool that holds less than this, or than this share of all cavities, is filled: a hole there
+# spoils the surface for little.
 LEAST_POOL_MM3 = 250.0
 LEAST_POOL = 0.005
-# What stands no higher than this counts for nothing there.
+# Liquid that stands no higher than this does not count.
 FILM_MM = 0.3
 # An outlet that frees less than this share of its pool is not worth drilling.
 LEAST_FREED = 0.5
-# How far above its lowest place an outlet of a pool may begin: tried one after the other.
+# Heights above a pool's lowest place at which an outlet may begin, tried one after the other.
 BANDS_MM = (4.0, 12.0, 30.0)
-# Ways tried exactly before a pool counts as out of a hole's reach.
+# Ways measured exactly before a pool counts as out of reach.
 MOST_TRIED = 25
-# Two mouths are this many diameters apart at least.
+# Mouths are at least this many diameters apart.
 APART = 2.5
-# A hole is kept where its ball still fits but for this.
+# A known hole is kept where its ball overlaps the wall by no more than this.
 FITS_MM = 0.1
-# What is this share of a hole's width lets pass what leaves through it: else low rooms, where a
-# ball has no way to rise, would fall apart into pools of their own.
+# A ball this much smaller than the hole passes wherever liquid does on its way to the hole: in low
+# cavities a full ball has no way to rise, and they fall apart into pools.
 PASSES = 0.9
-# Liquid runs where a ball of this share of a hole's width passes: what is narrower clogs.
+# Liquid runs where a ball of this share of a hole's width passes: narrower passages clog.
 RUNS = 0.4
-# Drops are followed on columns of this share of the grid's pitch.
+# The pitch of the columns on which drops are followed, as a share of the grid's pitch.
 FINE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """A channel and what it is for;  cavity : index of the cavity it opens."""
+    """A channel and its role;  cavity : index of the cavity it opens."""
 
     role: Role
     channel: Channel
@@ -67,7 +60,7 @@ class Hole:
 
 
 class Driller:
-    """Finds one hole after another in a part; ``drilled`` are those found so far."""
+    """Finds one hole after another in a part; ``drilled`` holds those found so far."""
 
     def __init__(
         self,
@@ -90,21 +83,21 @@ class Driller:
         self.drilled: list[tuple[Role, Channel]] = []
 
     def keep(self, holes: Sequence[Hole]) -> None:
-        """Take over holes whose inner ball still fits in the void."""
+        """Keep holes whose inner ball still fits in the void."""
         for hole in holes:
             clearance = self.void.depth_mm(hole.channel.inner_mm[None])[0]
             if clearance >= self.radius_mm - FITS_MM and len(self.pools.over(hole.channel)):
                 self.drilled.append((hole.role, hole.channel))
 
     def drill_outlets(self) -> None:
-        """An outlet for every pool that is worth one, the largest first."""
+        """Drill an outlet for every pool that is worth one, the largest first."""
         beyond_reach = np.zeros(0, dtype=np.int64)
         while True:
             outlets = self.pools.outlets(self._channels("outlet"))
             levels = self.pools.levels(outlets, slope=0.0)
             film = np.where(np.isfinite(levels), FILM_MM, 0.0)
-            standing = np.maximum(self.pools.standing_mm(levels) - film, 0.0)
-            pool, volume_mm3 = self.pools.largest(standing, beyond_reach)
+            depth = np.maximum(self.pools.liquid_depth_mm(levels) - film, 0.0)
+            pool, volume_mm3 = self.pools.largest(depth, beyond_reach)
             if volume_mm3 < max(LEAST_POOL_MM3, LEAST_POOL * float(self.pools.volume_mm3.sum())):
                 return
             channel = self._outlet_of(pool, volume_mm3)
@@ -114,7 +107,7 @@ class Driller:
                 self.drilled.append(("outlet", channel))
 
     def drill_vents(self, count_of: Callable[[float], int]) -> None:
-        """A vent for every cavity with an outlet, and more up to its count of holes."""
+        """Drill a vent for every cavity with an outlet, and more up to its count of holes."""
         reached = np.isfinite(self.pools.levels(self.pools.outlets(self._channels("outlet"))))
         bodies = [
             (role, int(self.pools.balls.body[self.pools.over(channel)[0]]))
@@ -130,7 +123,7 @@ class Driller:
                 self.drilled.append(("vent", channel))
 
     def left_of(self, void: Manifold) -> Manifold:
-        """The void without what does not drain: filled where balls stay, then where drops do."""
+        """The void that drains: what balls do not leave is filled, then what drops do not leave."""
         channels = self._channels("outlet")
         runs = balls_in(self.voxelized, self.void, RUNS * self.radius_mm)
         tops = np.maximum(
@@ -143,7 +136,7 @@ class Driller:
         return [channel for other, channel in self.drilled if other == role]
 
     def _outlet_of(self, pool: Int, volume_mm3: float) -> Channel | None:
-        """The best outlet of a pool, from farther up where none begins lower."""
+        """The best outlet of a pool (k,) of dexels; farther up where none begins low."""
         rests = self._rests_in(pool)
         spare_mm = self.radius_mm - self.pools.balls.radius_mm
         for band_mm in self._bands(rests):
@@ -157,14 +150,14 @@ class Driller:
         return None
 
     def _rests_in(self, pool: Int) -> Int:
-        """Where in a pool a ball of the hole's full width can be."""
+        """Dexels (m,) of balls of the hole's full width that fit in a pool (k,)."""
         return np.flatnonzero(np.isin(self._pool_of_rest, pool))
 
     def _bands(self, rests: Int) -> list[tuple[float, float]]:
-        """Bands of height to look for balls at rest in, one on the other, that hold them all.
+        """Bands of height, one on the other, that hold all balls at rest of the dexels (m,).
 
-        A band leaves out the ones before it: where those gave no hole, their places are the
-        cheapest still, and would be tried again.
+        Bands do not overlap: where a lower band gives no hole, its places are still the cheapest,
+        and would be tried again.
         """
         if not len(rests):
             return []
@@ -173,7 +166,7 @@ class Driller:
         return list(pairwise((0.0, *(band for band in BANDS_MM if band < high), high)))
 
     def _vent_of(self, cavity: Int) -> Channel | None:
-        """The best vent of a cavity, from farther down where none begins higher."""
+        """The best vent of a cavity (k,) of dexels; farther down where none begins high."""
         top = float(self.pools.dexels.high_mm[cavity].max())
         rests = self._rests_in(cavity)
         mouths = np.array([channel.centre_mm for _, channel in self.drilled])
@@ -188,19 +181,20 @@ class Driller:
         return None
 
     def _ways(self, balls: Float, extra_mm: Float, role: Role) -> tuple[Candidate, ...]:
+        """Ways out of balls (n, 3) mm that cost ``extra_mm`` (n,) by themselves."""
         return ways_out(
             self.voxelized, balls, extra_mm, self.radius_mm, self.wall_mm, self.clearance_mm, role
         )
 
     def _first_clean(self, ways: Sequence[Candidate]) -> Channel | None:
-        """The cheapest way that is clean by exact measure, apart from the holes there are."""
+        """The cheapest way that is clean by exact measure and apart from the other holes."""
         failed: list[Candidate] = []
         for way in ways:
             if len(failed) == MOST_TRIED:
                 break
             if not self._apart(way.mouth_mm) or any(way.like(other) for other in failed):
                 continue
-            channel = channel_along(
+            channel = exact_channel(
                 way, self.outside, self.void, self.diameter_mm, self.wall_mm, self.clearance_mm
             )
             if channel is not None and self._apart(channel.centre_mm):
@@ -209,6 +203,7 @@ class Driller:
         return None
 
     def _apart(self, mouth_mm: Float) -> bool:
+        """Whether a mouth (3,) mm is far enough from all others."""
         least = APART * self.diameter_mm
         return all(
             float(np.linalg.norm(mouth_mm - other.centre_mm)) >= least for _, other in self.drilled

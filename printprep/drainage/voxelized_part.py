@@ -1,7 +1,6 @@
-"""A part on a grid: where its void is, how deep its material, and where air comes from outside.
+"""A voxelized part: its void, the depth of its material, and the air that is open to the outside.
 
-One grid over the whole part, its layers as the printer sees them: z up from the plate.  What lies
-below the plate is closed.
+One grid covers the whole part, z up from the plate.  All below the plate is closed.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ if TYPE_CHECKING:
 # Cells along a hole's diameter, and the most along the part's longest side.
 CELLS_PER_DIAMETER = 5.0
 MOST_CELLS = 200
-# Cells of air around the part, for holes to end in.
+# Cells of air around the part, where holes end.
 MARGIN_CELLS = 8
 
 
 @dataclass(frozen=True, eq=False)
 class VoxelizedPart:
-    """A part's material, void and surroundings on one grid; arrays of shape ``grid.shape``.
+    """A part's material, void and surroundings on one grid; arrays of its shape (nx, ny, nz).
 
     void : bool, cells of the cavities.
     depth_mm : float32, below the part's outside, to about half a cell, negative in the air.
@@ -41,12 +40,12 @@ class VoxelizedPart:
     open: Bool
 
     def index(self, points: Float) -> tuple[Int, ...]:
-        """Cells that points (n, 3) lie in, clipped to the grid, as an index."""
+        """Index of the cells that points (n, 3) mm lie in, clipped to the grid; three of (n,)."""
         cell = np.rint((points - self.grid.origin_mm) / self.grid.pitch_mm).astype(np.int64)
         return tuple(np.clip(cell, 0, np.array(self.grid.shape) - 1).T)
 
     def depth_at(self, points: Float) -> Float:
-        """(n,) interpolated depth at points (n, 3)."""
+        """(n,) mm, interpolated depth at points (n, 3) mm."""
         from scipy.ndimage import map_coordinates
 
         where = ((points - self.grid.origin_mm) / self.grid.pitch_mm).T
@@ -55,7 +54,7 @@ class VoxelizedPart:
 
 
 def voxelize(outside: Manifold, diameter_mm: float) -> VoxelizedPart:
-    """A part without cavities on a grid fine enough for holes of a diameter."""
+    """Voxelize a part without cavities, fine enough for holes of a diameter."""
     from scipy.ndimage import distance_transform_edt
 
     box = np.array(outside.bounding_box())
@@ -72,14 +71,18 @@ def voxelize(outside: Manifold, diameter_mm: float) -> VoxelizedPart:
 
 
 def with_cavities(voxelized: VoxelizedPart, void: Manifold) -> VoxelizedPart:
-    """The same part with cavities, which lie inside it."""
+    """The same part with cavities inside it.
+
+    void : the cavities, as a positive solid.
+    """
     return replace(voxelized, void=filled(dexels_of(void, voxelized.grid), voxelized.grid))
 
 
 def open_air(empty: Bool) -> Bool:
-    """Cells of the air that a way through air in layers no higher joins to the grid's sides.
+    """Cells of the air with a way to the grid's sides through air in layers no higher.
 
-    The plate is closed.  What is not open at its layer is a cup while the part is printed.
+    The plate is closed.  Air that is not open at its layer is a cup while the part prints.
+    empty : (nx, ny, nz) bool;  returns the same shape.
     """
     from scipy.ndimage import label
 

@@ -80,14 +80,14 @@ def test_without_an_outlet_all_of_it_stays():
 def test_a_basin_holds_up_to_its_sill():
     pools, _, _ = w_shaped()
     levels = pools.levels(pools.outlets([LEFT]))
-    pool, volume = pools.largest(pools.standing_mm(levels), np.zeros(0, dtype=np.int64))
+    pool, volume = pools.largest(pools.liquid_depth_mm(levels), np.zeros(0, dtype=np.int64))
     # 3 mm deep to the sill, all of it by where balls are; the slope from the outlet on top
     right = pool[pools.dexels.low_mm[pool] > 3]
     assert pools.dexels.low_mm[right].min() == pytest.approx(3 + RADIUS, abs=0.02)
     assert levels[right].max() == pytest.approx(6 + RADIUS + 12 * SLOPE, abs=0.2)
     assert 250 < volume < 600
     both = pools.levels(pools.outlets([LEFT, RIGHT]))
-    assert float(pools.standing_mm(both).max()) < RAISED_MM + 25 * SLOPE
+    assert float(pools.liquid_depth_mm(both).max()) < RAISED_MM + 25 * SLOPE
 
 
 def test_an_outlet_above_the_floor_leaves_what_lies_below():

@@ -14,7 +14,7 @@ from solids import box, cylinder
 from printprep.drainage.channel import bored
 from printprep.drainage.drain_cavities import Drained, drain_cavities
 from printprep.drainage.trapped import suction_cups, trapped
-from printprep.profile_schema import Drain as HoleCounts
+from printprep.profile_schema import DrainSettings as HoleCounts
 from printprep.types import Drain
 
 WALL = 2.0

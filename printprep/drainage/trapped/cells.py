@@ -18,14 +18,19 @@ if TYPE_CHECKING:
 
 
 def edge_cells(shape: tuple[int, ...]) -> Bool:
-    """The cells at the edge of a grid."""
+    """(nx, ny, nz) bool, the cells at the edge of a grid of that shape."""
     edge = np.ones(shape, dtype=bool)
     edge[1:-1, 1:-1, 1:-1] = False
     return edge
 
 
 def connected_pieces(cells: Bool, *, diagonal: bool) -> tuple[Int32, int]:
-    """Connected pieces, and the number of the one that is outside."""
+    """Number the connected pieces of cells.
+
+    cells : (nx, ny, nz) bool;  diagonal : whether cells that share only an edge or a corner are
+    connected.
+    Returns (nx, ny, nz) the piece's number, 0 for none, and the number of the piece outside.
+    """
     from scipy.ndimage import generate_binary_structure, label
 
     pieces, _ = label(cells, structure=generate_binary_structure(3, 3 if diagonal else 1))
@@ -33,7 +38,11 @@ def connected_pieces(cells: Bool, *, diagonal: bool) -> tuple[Int32, int]:
 
 
 def spread_within(cells: Bool, seeds: Int32) -> Int32:
-    """Every cell that a seed reaches within ``cells``, with the number of the first to do so."""
+    """Spread seeds through cells, side by side; the first seed to reach a cell keeps it.
+
+    cells : (nx, ny, nz) bool;  seeds : (nx, ny, nz) numbers, 0 for none.
+    Returns (nx, ny, nz) the number of each cell's seed, 0 where none reaches it.
+    """
     owner = np.where(cells, seeds, 0).ravel()
     allowed = cells.ravel()
     nx, ny, nz = cells.shape
@@ -53,7 +62,10 @@ def spread_within(cells: Bool, seeds: Int32) -> Int32:
 
 
 def _rim(owner: Int32, cells: Bool) -> Int:
-    """Owned cells with a neighbour that is allowed and not owned."""
+    """(n,) flat, owned cells with an allowed neighbour that is not owned yet.
+
+    owner, cells : (nx, ny, nz).
+    """
     waiting = cells & (owner == 0)
     beside = np.zeros(cells.shape, dtype=bool)
     for axis in range(3):
@@ -65,7 +77,7 @@ def _rim(owner: Int32, cells: Bool) -> Int:
 
 
 def _same_line(here: Int, there: Int, axis: int, shape: tuple[int, int, int]) -> Bool:
-    """Which steps along an axis of a flat index stay within the grid."""
+    """(n,) bool, which steps along an axis stay within the grid; flat indices (n,) to (n,)."""
     _, ny, nz = shape
     inside: Bool = (there >= 0) & (there < shape[0] * ny * nz)
     if axis == 1:
@@ -76,7 +88,10 @@ def _same_line(here: Int, there: Int, axis: int, shape: tuple[int, int, int]) ->
 
 
 def cells_of_each(owner: Int32, count: int) -> list[tuple[int, Int]]:
-    """The cells of every number from 1 to ``count`` that has any."""
+    """The flat cells (m,) of every number from 1 to ``count`` that has any.
+
+    owner : (nx, ny, nz) numbers.
+    """
     flat = owner.ravel()
     mine = np.flatnonzero((flat > 0) & (flat <= count))
     order = np.argsort(flat[mine], kind="stable")
