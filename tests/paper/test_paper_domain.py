@@ -113,9 +113,9 @@ def test_refusals():
         build_domain(np.zeros((4, 4, 4), dtype=bool), PaperSettings())
     with pytest.raises(UsageError, match="bool"):
         build_domain(np.ones((4, 4, 4)), PaperSettings())
-    with pytest.raises(UsageError, match="filling"):
+    with pytest.raises(UsageError, match="Filling .* does not exist"):
         fill(box(), "guess")
-    with pytest.raises(UsageError, match="shell rule"):
+    with pytest.raises(UsageError, match="Shell rule .* does not exist"):
         build_domain(box(), PaperSettings(), shell="guess")
 
 
