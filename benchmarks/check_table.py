@@ -1,4 +1,4 @@
-"""Try every rule on every closed-form case and write what was missed and what was a false alarm.
+"""Try every rule on every closed-form case, and table misses and false alarms.
 
     python benchmarks/check_table.py -o docs/checks.md
 

@@ -80,7 +80,7 @@ def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float
     near, table = _reached(form)
 
     def put(array: np.ndarray) -> torch.Tensor:
-        """An array of any shape, on the device."""
+        """An array of any shape (…,), on the device."""
         return torch.from_numpy(np.ascontiguousarray(array)).to(where)
 
     with _one_thread(), torch.inference_mode():
