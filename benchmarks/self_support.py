@@ -112,7 +112,7 @@ def markdown(rows: list[Row]) -> str:
     if shares:
         lines += [
             "",
-            f"Mean added share {np.mean(shares):.4f} of {len(shares)} hollowable volumes.",
+            f"Mean added share {np.mean(shares):.4f} over {len(shares)} models.",
         ]
     return "\n".join(lines) + "\n"
 

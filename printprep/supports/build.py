@@ -71,13 +71,13 @@ def vaulted(hollowable_volume: Manifold, profile: Profile) -> Vaults:
     capitals, forest = _raised(samples, hollowable_volume, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
     cavity = _without(hollowable_volume, wide + narrow).simplify(SIMPLIFY_MM)
-    cavity = roomy(cavity, members.thickness_mm)
+    cavity = without_small_pieces(cavity, members.thickness_mm)
     flagged = unsupported_ceilings(cavity, rule, PHASES).patches
     under, props, flagged = carry_flagged(cavity, flagged, rule, members, capitals, forest)
     wide, narrow = wide + under, narrow + props
     if wide:
         cavity = contract_short_edges(_without(cavity, under + props), SHORT_MM)
-        cavity = roomy(cavity, members.thickness_mm)
+        cavity = without_small_pieces(cavity, members.thickness_mm)
     left = Unsupported(flagged)
     return Vaults(
         cavity=cavity,
@@ -114,7 +114,7 @@ def _without(hollowable_volume: Manifold, pieces: Sequence[Frustum]) -> Manifold
     return (hollowable_volume - united(pieces)).as_original()
 
 
-def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:
+def without_small_pieces(cavity: Manifold, thickness_mm: float) -> Manifold:
     """Drop the pieces of a cavity smaller than a ball of the least feature: they print solid."""
     from manifold3d import Manifold
 

@@ -94,8 +94,3 @@ class InsideLookup:
         np.bitwise_xor.at(crossed, (column, first), 1)
         inside = np.bitwise_xor.accumulate(crossed, axis=1)[:, :-1]
         return inside.astype(bool)
-
-    def columns_mm(self) -> Float:
-        """(nx, ny, 2) mm, places of the lines."""
-        x, y = (self.low_mm[k] + self.step_mm * np.arange(n) for k, n in enumerate(self.shape))
-        return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)

@@ -128,10 +128,11 @@ def test_a_wide_flat_ceiling_takes_few_funnels():
 
 
 def test_lines_of_a_lattice_know_the_inside_at_every_height():
-    """Of a bubble in a ball: what each column says of points one by one, and nothing beyond."""
+    """Of a bubble in a ball: the same as points one by one, and nothing beyond."""
     void = Manifold.sphere(6, 48) - Manifold.sphere(3, 48)
     lookup, z = InsideLookup.of(void, 0.35), np.linspace(-8, 8, 40)
-    places = lookup.columns_mm().reshape(-1, 2)
+    x, y = (lookup.low_mm[k] + 0.35 * np.arange(n) for k, n in enumerate(lookup.shape))
+    places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     points = np.stack(np.broadcast_arrays(*places.T[..., None], z), axis=-1)
     at = lookup.at_heights(z)
     assert (at[:-1] == lookup.contains(points)).all()
