@@ -117,7 +117,9 @@ def weighed_ballast(
 def stability_of_choice(program: Program, choice: Choice) -> Stability:
     """How a choice stands by its moments: its weakest body."""
     each = []
-    for (_, section, _), part in zip(program.standing(choice.base), choice.parts, strict=True):
+    for (_, section, _), part in zip(
+        program.bodies_on_base(choice.base), choice.parts, strict=True
+    ):
         x, y, z = (float(value) for value in part.moments[1:] / part.moments[0])
         each.append(balanced(contact_of(section), (x, y, z)))
     return least(each)
@@ -128,7 +130,7 @@ def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean)
     each = [
         balanced(contact_of(section), found.centre_of_mass_mm)
         for (_, section, _), found in zip(
-            program.standing(choice.base), printed.stabilities, strict=True
+            program.bodies_on_base(choice.base), printed.stabilities, strict=True
         )
     ]
     tilt = tilt_toward(least(each), lean)
