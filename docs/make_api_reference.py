@@ -6,6 +6,7 @@ Run it from anywhere after a change to a public name:  python docs/make_api_refe
 from __future__ import annotations
 
 import inspect
+import re
 import sys
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -111,7 +112,8 @@ def _short(default: str) -> str:
 
 
 def _type(annotation: Any) -> str:
-    return annotation if isinstance(annotation, str) else getattr(annotation, "__name__", "Any")
+    text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", "Any")
+    return re.sub(r"Annotated\[(\w+), .*\]", r"\1", text)
 
 
 def members(item: Any) -> list[str]:
