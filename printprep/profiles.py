@@ -131,8 +131,10 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
 
 
 def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
-    if kind in ("impossible", "forbidden", "unknown"):
+    if kind in ("impossible", "forbidden"):
         return str(item["msg"])
+    if kind == "unknown":
+        return f"is {item['input']!r}, {item['msg']}"
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""
     if kind == "extra_forbidden" and owner:
