@@ -15,7 +15,7 @@ import numpy as np
 
 from printprep.grid.grid import points_mm, subdivided
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
-from printprep.mesh.winding_columns import winding_at_of_closed
+from printprep.mesh.winding_columns import winding_in_closed
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Surface:
         size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
         jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, (len(points), 2)) * size
         moved = np.column_stack([points[:, :2] + jitter, points[:, 2]])
-        result: NDArray[np.bool_] = winding_at_of_closed(moved, self.vertices, self.faces) > 0.5
+        result: NDArray[np.bool_] = winding_in_closed(moved, self.vertices, self.faces) > 0.5
         return result
 
     def depth_mm(self, points: Float) -> Float:

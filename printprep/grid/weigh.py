@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -44,7 +44,7 @@ def moments_in_cells(manifold: Manifold, grid: Grid, lines: int = 4) -> Float:
     )
     columns = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     columns += np.random.default_rng(0).uniform(-spacing / 2, spacing / 2, columns.shape)
-    crossings = cross(*arrays(manifold), columns)
+    crossings = crossings_of(*arrays(manifold), columns)
     # Sorted by column, then upward: a solid is entered and left by turns.
     column, low, high = crossings.column[::2], crossings.z_mm[::2], crossings.z_mm[1::2]
     if len(crossings.z_mm) % 2 or not np.array_equal(column, crossings.column[1::2]):
