@@ -361,9 +361,9 @@ def test_files_that_are_no_3mf(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="does not exist"):
         read_3mf(path)
     path.write_bytes(b"")
-    assert "not a 3MF" in refused(path)
+    assert "cannot be opened as a 3MF" in refused(path)
     path.write_bytes(b"solid nothing")
-    assert "not a 3MF" in refused(path)
+    assert "cannot be opened as a 3MF" in refused(path)
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("readme.txt", "hello")
     assert "no 3D model" in refused(path)
