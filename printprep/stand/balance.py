@@ -1,4 +1,4 @@
-"""Where a part's weight and feet are, as JSON: what a print of it can be compared with."""
+"""Writes a part's balance (centre of mass, contact) as JSON, to compare a print of it with."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 def balance_json(
     part: Manifold, first_layer_mm: float, centre_mm: Sequence[float] | None = None
 ) -> dict[str, Any]:
-    """Of the whole part, in its own coordinates (on the bed, z up).
+    """The balance of a part, in its coordinates (on the bed, z up).
 
-    centre_mm : the centre of mass of a part that is not solid throughout.
+    centre_mm : (3,) centre of mass of a part that is not solid throughout (sparse infill).
 
-    bounds_mm, centre_of_mass_mm;  contact : hull (counter-clockwise) and area of the first layer's
-    section, null without one;  bodies : how many parts do not touch each other.
+    Keys: bounds_mm, centre_of_mass_mm;  contact : hull (counter-clockwise) and area of the first
+    layer's section, null where it is empty;  bodies : number of bodies that do not touch.
     """
     contact = contact_of(section_at_bed(part, first_layer_mm))
     return {
