@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 CELLS = 200  # along the longest side
 _BLOCK = 4  # cells along an edge of the coarse blocks that decide where to look closely
 _MARGIN = 2 * _BLOCK  # cells around the model
-# The grid is shifted by fractions of a cell that the coordinates of a model hardly ever have.
+# The grid is shifted by fractions of a cell, so that no node falls on a model's own coordinates.
 _ASIDE = np.array((0.3183, 0.3679, 0.4142))
 _LEAST = 1e-3  # |f| stays above this share of a cell, else triangles degenerate at grid points
 _SIMPLIFY = 0.05  # cells that the surface may move when triangles are merged

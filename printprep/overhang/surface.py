@@ -49,14 +49,14 @@ class VoidSurface:
 
     @cached_property
     def shallow(self) -> Bool:
-        """(m,) whether a face is a ceiling without a way down."""
+        """(m,) whether a face is a ceiling too flat to be a way down."""
         level = np.hypot(self.normals[:, 0], self.normals[:, 1])
         result: Bool = self.normals[:, 2] > self.steepest * level + _EXACT
         return result
 
     @cached_property
     def keels(self) -> tuple[Int, Float, Float]:
-        """Hanging edges between two faces with a way down, neither of which falls into the other.
+        """Hanging edges between two faces steep enough, neither of which falls into the other.
 
         Returns (k, 2) their ends, (k,) the tangents of their own overhang, and (k, 3) the sums of
         the normals on both sides.
@@ -77,7 +77,7 @@ class VoidSurface:
         return found, np.hypot(way[:, 0], way[:, 1]) / fall, mine[kept] + theirs[kept]
 
     def steep_keels(self) -> Int:
-        """(k, 2) ends of the keels without a way down."""
+        """(k, 2) ends of the keels that are too flat to be a way down."""
         ends, slope, _ = self.keels
         return ends[slope > self.steepest]
 

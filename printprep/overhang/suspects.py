@@ -1,7 +1,8 @@
 """Finds where alone the overhang rule can flag a void: shallow faces, keels, tips, grooves.
 
 Notation: s the tangent of a face's overhang, u the unit vector in which it faces, seen from above;
-T = off / h and t = (off − c) / h (limits.py).  A way down falls |Δxy| ≤ T |Δz|.
+T = off / h and t = (off − c) / h (limits.py).  A *way down* is a path on the surface that falls
+with |Δxy| ≤ T |Δz|.
 
 The rule flags either material of the layer above or void that closing fills.
 
@@ -10,8 +11,8 @@ its line of steepest descent, until it ends at an edge.  There either the next f
 downward, or both faces fall toward the edge, which is a keel of material that hangs in the void;
 then the edge itself must be a way down.  A corner has a way down where an edge or a face that meets
 there has one.  Where none of this fails, there is material one layer deeper within h T = off.
-Hence flagged material lies within off of a *shallow* face, s > T, of a *keel* without a way down,
-or of a *tip*, a corner without one.
+Hence flagged material lies within off of a *shallow* face, s > T, of a *keel* too flat to be a way
+down, or of a *tip*, a corner without a way down.
 
 Void.  Closing fills a point p that no disc of radius c in the void reaches: between walls A and
 B, on the arc of a disc no larger that touches both, at distances of them with

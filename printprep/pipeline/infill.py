@@ -152,10 +152,10 @@ def _only_estimated(has_slicer: bool) -> Finding:
     from printprep.types import Finding
 
     why = "Something of it does not touch the bed" if has_slicer else "No slicer was found"
-    fix = "Give it a base (--base auto)" if has_slicer else INSTALL_HINT
+    fix = "Give it a base (--base auto)." if has_slicer else INSTALL_HINT
     return Finding(
         "infill-estimated",
         "warning",
         f"{why}: what it weighs and how it stands is estimated, not measured in its G-code.",
-        f"{fix[0].upper()}{fix[1:]}.",
+        fix,
     )

@@ -174,7 +174,7 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
 
 
 def _leaning(azimuth_deg: float, lean_deg: float) -> Float:
-    """(3, 3) rotation from the level bed to the leaning one; it leans to the right in the picture."""
+    """(3, 3) rotation from the level bed to the leaning one, which leans to the right."""
     azimuth = np.radians(azimuth_deg)
     lean = _turn(np.array([-np.sin(azimuth), np.cos(azimuth), 0.0]), lean_deg)
     to_the_right = _AZIMUTH_DEG + 90.0 - _SWING_DEG - azimuth_deg

@@ -22,7 +22,7 @@ INSTALL_HINT = (
 
 
 @dataclass(frozen=True)
-class Done:
+class RunOutput:
     """The exit code and the output of a program."""
 
     exit_code: int
@@ -32,7 +32,7 @@ class Done:
 
 def run_child(
     executable: Path, arguments: Sequence[str], folder: Path, timeout_seconds: float
-) -> Done:
+) -> RunOutput:
     """Run `executable`, with its settings in `folder`, and wait for it.
 
     Raises ToolError where it cannot be started, runs beyond the time limit (it is stopped then,
@@ -64,7 +64,7 @@ def run_child(
         ) from error
     finally:
         _end(process, posix)
-    done = Done(process.returncode, out, err)
+    done = RunOutput(process.returncode, out, err)
     if done.exit_code != 0:
         raise ToolError(
             f"{executable.name} failed with exit code {done.exit_code}.", last_lines(done) or None
@@ -84,7 +84,7 @@ def _end(process: subprocess.Popen[str], posix: bool) -> None:
         process.communicate()
 
 
-def last_lines(done: Done) -> str:
+def last_lines(done: RunOutput) -> str:
     """The last lines of a program's output, joined into one, to quote in an error."""
     lines = [line.strip() for line in (f"{done.stdout}\n{done.stderr}").splitlines()]
     return " / ".join([line for line in lines if line and "[trace]" not in line][-3:])

@@ -10,7 +10,7 @@ import io
 import zipfile
 from collections.abc import Mapping
 
-from printprep.threemf.text import escape
+from printprep.threemf.xml_text import escape
 
 MODEL_PART = "3D/3dmodel.model"
 THUMBNAIL_PART = "Metadata/thumbnail.png"

@@ -21,7 +21,7 @@ import numpy as np
 
 from printprep.errors import UsageError
 from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
-from printprep.threemf.text import clean, escape, triangle_lines, vertex_lines
+from printprep.threemf.xml_text import clean, escape, triangle_lines, vertex_lines
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
