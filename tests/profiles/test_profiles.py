@@ -105,7 +105,9 @@ def test_where_there_is_no_nozzle_there_are_no_nozzle_figures(name: str) -> None
 
 def test_a_path_works_wherever_a_name_does(tmp_path: Path) -> None:
     path = tmp_path / "my printer.toml"
-    path.write_text(profile_source("fdm-pla-0.4").replace("wall_mm = 1.2", "wall_mm = 1.6"))
+    path.write_text(
+        profile_source("fdm-pla-0.4").replace("wall_mm = 1.2", "wall_mm = 1.6"), encoding="utf-8"
+    )
     for form in (path, str(path)):
         assert load_profile(form).wall_mm == 1.6
         assert load_profile(form).name == "my printer"
@@ -179,10 +181,12 @@ def test_an_invalid_value_is_named_with_profile_key_and_range(
 
 def test_errors_in_a_file_name_the_file(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text(profile_source("fdm-pla-0.4").replace("lean_deg = 10.0", "lean_deg = 95"))
+    path.write_text(
+        profile_source("fdm-pla-0.4").replace("lean_deg = 10.0", "lean_deg = 95"), encoding="utf-8"
+    )
     with pytest.raises(UsageError, match=r"mine\.toml: stability\.lean_deg is 95.*0 and 60"):
         load_profile(path)
-    path.write_text(profile_source("fdm-pla-0.4").replace("wall_mm = 1.2", ""))
+    path.write_text(profile_source("fdm-pla-0.4").replace("wall_mm = 1.2", ""), encoding="utf-8")
     with pytest.raises(UsageError, match=r"mine\.toml: wall_mm is missing.*0\.2 and 50"):
         load_profile(path)
     path.write_text("wall_mm = ")

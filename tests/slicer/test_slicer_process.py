@@ -138,7 +138,7 @@ def test_every_call_empties_the_hook_and_keeps_to_its_own_folder(
             patch.setenv("SAID", str(said))
             with pytest.raises(ToolError, match="exit code 1"):
                 call()
-        arguments = ast.literal_eval(said.read_text())
+        arguments = ast.literal_eval(said.read_text(encoding="utf-8"))
         assert arguments[arguments.index("--post-process") + 1] == ""
         datadir = Path(arguments[arguments.index("--datadir") + 1])
         assert not datadir.exists()  # taken away with what the slicer left there
