@@ -28,7 +28,7 @@ from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
 from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import profile_settings
-from printprep.stand.stability import least
+from printprep.stand.stability import least_stable
 from printprep.types import Solid
 from printprep.verify.run import verify
 
@@ -106,7 +106,9 @@ def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> Ro
     for pattern in ("lightning", "gyroid"):
         weighed = uniform(made.solid, slicer, profile, pattern)
         row[f"{pattern}_g"] = None if weighed is None else grams(weighed, profile)
-        row[f"{pattern}_deg"] = None if weighed is None else least(weighed.stabilities).tilt_deg
+        row[f"{pattern}_deg"] = (
+            None if weighed is None else least_stable(weighed.stabilities).tilt_deg
+        )
     row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
     return row
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -36,7 +36,7 @@ def dexels_of(manifold: Manifold, grid: Grid) -> Dexels:
     x, y = (grid.origin_mm[axis] + grid.pitch_mm * np.arange(grid.shape[axis]) for axis in (0, 1))
     lines = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(nx * ny, 2)
     lines += np.random.default_rng(0).uniform(-1e-4, 1e-4, lines.shape) * grid.pitch_mm
-    found = cross(*arrays(manifold), lines)
+    found = crossings_of(*arrays(manifold), lines)
     return Dexels(found.column[::2], found.z_mm[::2], found.z_mm[1::2])
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -41,5 +41,5 @@ def ceiling_samples(
     high = vertices[flat].max(axis=(0, 1))[:2]
     axes = [np.arange(low[k], high[k] + spacing_mm, spacing_mm) for k in range(2)]
     columns = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    hits = cross(vertices, flat, columns)
+    hits = crossings_of(vertices, flat, columns)
     return np.column_stack([columns[hits.column], hits.z_mm])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -49,7 +49,7 @@ class InsideLookup:
         nx, ny = (np.ceil((high[:2] - corner) / step_mm).astype(int) + 1).tolist()
         x, y = (corner[k] + step_mm * np.arange(n) for k, n in enumerate((nx, ny)))
         columns = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-        hits = cross(vertices, faces, columns)
+        hits = crossings_of(vertices, faces, columns)
         span = float(high[2] - low[2]) + 2.0
         keys = hits.column * span + (hits.z_mm - low[2] + 1.0)
         return InsideLookup(corner, step_mm, (nx, ny), keys, float(low[2]) - 1.0, span)

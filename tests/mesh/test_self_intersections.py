@@ -41,7 +41,7 @@ def test_a_ball_with_one_vertex_moved(place, through, beside):
 
 
 @given(st.floats(-6, 6), st.floats(-6, 6), st.floats(-15, 15))
-def test_what_is_folded_is_pierced(x, y, z):
+def test_a_folded_surface_intersects_itself(x, y, z):
     vertices, faces = ball_with_a_vertex_at((x, y, z))
     if folded(vertices, faces):
         assert len(self_intersections(vertices, faces).face) > 0

@@ -19,7 +19,7 @@ import numpy as np
 from printprep.grid.grid import cropped, points_mm
 from printprep.mesh.aabb_tree import SurfaceTree
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def _filled(vertices: Float, faces: Int, grid: Grid) -> Bool:
     # Symmetric models have corners exactly above cell centres.
     reach = 1e-6 * float(np.ptp(vertices, axis=0).max())
     columns = columns + np.random.default_rng(0).uniform(-reach, reach, columns.shape)
-    found = cross(vertices, faces, columns)
+    found = crossings_of(vertices, faces, columns)
     layer = np.ceil((found.z_mm - grid.origin_mm[2]) / grid.pitch_mm)
     layer = np.clip(layer, 0, nz).astype(np.int64)
     # Upward, material begins where the surface faces down and ends where it faces up.
