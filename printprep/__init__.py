@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from printprep.version import __version__
 
 if TYPE_CHECKING:
+    from printprep import generators
     from printprep.errors import (
         GeometryError,
         InputError,
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
     )
     from printprep.pipeline.hollow import hollow
     from printprep.profiles import Profile, load_profile
-    from printprep.types import Finding, HollowResult
+    from printprep.result import HollowResult
+    from printprep.types import Finding
 
 __all__ = [
     "Finding",
@@ -40,6 +42,7 @@ __all__ = [
     "ToolError",
     "UsageError",
     "__version__",
+    "generators",
     "hollow",
     "load_profile",
 ]
@@ -47,7 +50,7 @@ __all__ = [
 _HOME = {
     "Finding": "printprep.types",
     "GeometryError": "printprep.errors",
-    "HollowResult": "printprep.types",
+    "HollowResult": "printprep.result",
     "InputError": "printprep.errors",
     "OutputError": "printprep.errors",
     "PrintprepError": "printprep.errors",
@@ -60,6 +63,8 @@ _HOME = {
 
 
 def __getattr__(name: str) -> Any:
+    if name == "generators":
+        return import_module("printprep.generators")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(_HOME[name]), name)

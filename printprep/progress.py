@@ -1,7 +1,7 @@
-"""How a long run tells what it is doing: one stage at a time, on stderr, or not at all.
+"""Shows which stage of a long run is at work: one line on stderr, or nothing.
 
-Whoever runs a stage opens ``progress.stage(name)`` around it, by the names in ``STAGES``.
-A ``Stopwatch`` measures the stages of a run as it tells them.
+The code of a stage runs inside ``progress.stage(name)``, with a name from ``STAGES``.  A
+``Stopwatch`` also measures how long each stage takes.
 """
 
 from __future__ import annotations
@@ -11,42 +11,72 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from types import MappingProxyType
-from typing import Protocol
+from typing import Literal, Protocol
 
-STAGES: Mapping[str, str] = MappingProxyType(
+Stage = Literal[
+    "read",
+    "repair",
+    "voxelize",
+    "cavity",
+    "supports",
+    "base",
+    "solve",
+    "advice",
+    "check",
+    "alternative",
+    "simulate",
+    "draw",
+    "write",
+    "read-part",
+    "slice",
+    "slice-supports",
+    "slice-solid",
+    "slice-baselines",
+]
+"""Names of stages: a run's seconds are told by them."""
+
+STAGES: Mapping[Stage, str] = MappingProxyType(
     {
         "read": "Reading the model",
-        "repair": "Making it a solid",
-        "voxelize": "Measuring how deep the material is",
-        "supports": "Carrying the cavity's ceilings from inside",
-        "base": "Choosing what it stands on",
-        "solve": "Finding the lightest filling that stands",
+        "repair": "Repairing the surface",
+        "voxelize": "Measuring the depth below the surface",
         "cavity": "Cutting the cavity",
-        "advice": "Looking for what would make it stand",
-        "check": "Checking walls, stand and surface",
+        "supports": "Building vaults under the ceilings",
+        "base": "Choosing the base",
+        "solve": "Finding the lightest filling that stands",
+        "advice": "Looking for a base or pose that makes it stand",
+        "check": "Checking walls, tilt angle and surface",
+        "alternative": "Estimating the other fill",
+        "simulate": "Simulating how it stands",
+        "draw": "Drawing the simulation",
         "write": "Writing the file",
+        "read-part": "Reading the part",
+        "slice": "Slicing the part",
+        "slice-supports": "Slicing it with supports switched on",
+        "slice-solid": "Slicing the solid model",
+        "slice-baselines": "Slicing the model with plain infill",
     }
 )
 
 
 class Progress(Protocol):
-    """Whatever wants to know which stage runs."""
+    """Receives the stages of a run."""
 
-    def stage(self, name: str) -> AbstractContextManager[None]:
-        """A context held open while stage ``name`` (a key of ``STAGES``) runs."""
+    def stage(self, name: Stage) -> AbstractContextManager[None]:
+        """A context that stays open while stage ``name`` (a key of ``STAGES``) runs."""
         ...
 
 
 class Silent:
-    """Says nothing: the default of the Python interface, of ``-q`` and of a redirected stderr."""
+    """Shows nothing: the default in Python, with ``-q``, and where stderr is redirected."""
 
-    def stage(self, name: str) -> AbstractContextManager[None]:
+    def stage(self, name: Stage) -> AbstractContextManager[None]:
         del name
         return nullcontext()
 
 
 class Spinner:
-    """One line on stderr that moves while a stage runs and leaves no trace."""
+    """Shows one moving line on stderr while a stage runs, and removes it afterwards."""
 
     def __init__(self) -> None:
         from rich.console import Console
@@ -54,8 +84,8 @@ class Spinner:
         self._console = Console(stderr=True)
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        with self._console.status(f"{STAGES.get(name, name)} …"):
+    def stage(self, name: Stage) -> Iterator[None]:
+        with self._console.status(f"{STAGES[name]} …"):
             yield
 
 
@@ -63,23 +93,23 @@ SILENT: Progress = Silent()
 
 
 def for_terminal(*, quiet: bool = False) -> Progress:
-    """A spinner when a person watches stderr, silence otherwise."""
+    """A spinner where stderr is a terminal, silence elsewhere."""
     return SILENT if quiet or not sys.stderr.isatty() else Spinner()
 
 
 class Stopwatch:
-    """Measures the stages of a run; ``seconds`` holds them by name, in order.
+    """Passes the stages of a run on and measures them; ``seconds`` holds them by name, in order.
 
-    Seconds go to the summary alone, never into a file that must be the same next time.
+    The seconds go into the summary only, never into a file: the same input gives the same bytes.
     """
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
-        self.seconds: dict[str, float] = {}
+        self.seconds: dict[Stage, float] = {}
 
     @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time what runs inside, under this name."""
+    def stage(self, name: Stage) -> Iterator[None]:
+        """Add the time of the block to this stage."""
         start = time.perf_counter()
         with self._progress.stage(name):
             yield

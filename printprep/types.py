@@ -6,9 +6,8 @@ degrees, densities g/cm³.  ``eq=False`` where a field is an array or a mesh: id
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -17,8 +16,8 @@ if TYPE_CHECKING:
 
 
 Severity = Literal["info", "warning", "error"]
+Unit = Literal["mm", "mm2", "mm3", "deg", "g", "percent"]  # of a finding's value and limit
 SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a file is written for
-Fill = Literal["cavity", "infill"]
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
@@ -92,7 +91,7 @@ class Finding:
     fix: str | None = None
     value: float | None = None
     limit: float | None = None
-    unit: str | None = None
+    unit: Unit | None = None
     at_mm: tuple[float, float, float] | None = None
     area_mm2: float | None = None
     volume_mm3: float | None = None
@@ -175,13 +174,14 @@ class Density:
     """The optimized interior.
 
     rho : float64 of the grid's shape, 1 solid, 0 empty, over the whole model.
-    planes : one per body: the plane above which the cavity lies, or None when nothing is filled.
+    planes : one per body: the plane above which the cavity lies, or None when nothing is filled;
+    None in all: no plane, the cavity is where rho is below one half.
     aim_deg : the lean solved for (margin included), None for the paper's objective.
     reachable_deg : largest lean any filling reaches, None when the lean asked for is feasible.
     """
 
     rho: Float
-    planes: tuple[Plane | None, ...]
+    planes: tuple[Plane | None, ...] | None
     aim_deg: float | None
     reachable_deg: float | None
     certificate: Certificate | None
@@ -365,44 +365,5 @@ class Infill:
 class AlternativeFill:
     """What the fill that was not chosen would weigh, estimated."""
 
-    fill: Fill
+    fill: str
     mass_g: float
-
-
-@dataclass(frozen=True, eq=False)
-class HollowResult:
-    """Everything ``hollow`` found out.  Masses are geometric volume times material density.
-
-    Where ``infill`` takes the place of cavities, mass and stability are those of the print.
-    """
-
-    model: Model
-    solid: Solid
-    part: Part
-    profile: Any
-    density: Density
-    stability_solid: Stability
-    stability: Stability
-    lean: Lean
-    solid_mass_g: float
-    mass_g: float
-    wall_min_mm: float | None
-    findings: tuple[Finding, ...]
-    advice: Advice | None = None
-    supports: Supports | None = None
-    drainage: Drainage | None = None
-    seconds: Mapping[str, float] = field(default_factory=dict)
-    simulation: Simulation | None = None
-    infill: Infill | None = None
-    alternative_fill: AlternativeFill | None = None
-
-    @property
-    def lean_deg(self) -> float:
-        """The angle of the lean asked for."""
-        return self.lean.angle_deg
-
-    def write(self, path: Any, slicer: SlicerName = "prusa") -> None:
-        """Write the part; the suffix chooses the format (.3mf carries PrusaSlicer's settings)."""
-        from printprep.output.part_file import write_part
-
-        write_part(self, path, slicer)

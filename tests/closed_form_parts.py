@@ -12,12 +12,12 @@ from printprep.check import CheckContext, context_of_solid, run_rules
 from printprep.mesh.measure import arrays
 from printprep.mesh.quantize import quantized
 from printprep.profiles import Profile, load_profile
+from printprep.result import HollowResult
 from printprep.stand.stability import stability
 from printprep.types import (
     Base,
     Certificate,
     Density,
-    HollowResult,
     Lean,
     Model,
     Part,

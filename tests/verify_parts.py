@@ -8,7 +8,7 @@ from pathlib import Path
 import trimesh
 
 from printprep import hollow
-from printprep.types import HollowResult
+from printprep.result import HollowResult
 
 SIDE = 24.0
 

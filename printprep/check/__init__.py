@@ -32,16 +32,18 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     watertight,
 )
 from printprep.check.context import CheckContext, context_of_solid
-from printprep.check.registry import Rule, at_or_above, rules, run_rules
+from printprep.check.registry import RULES, Rule, at_or_above, rule, run_rules, sorted_findings
 from printprep.check.walls import Wall, wall_min_mm
 
 __all__ = [
+    "RULES",
     "CheckContext",
     "Rule",
     "Wall",
     "at_or_above",
     "context_of_solid",
-    "rules",
+    "rule",
     "run_rules",
+    "sorted_findings",
     "wall_min_mm",
 ]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.measure import arrays
 from printprep.types import Finding
@@ -39,15 +40,13 @@ def coarse_facets(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if share < LEAST_SHARE or len(np.unique(facet[coarse])) < LEAST_FACETS:
         return
     worst = float(np.percentile(miss[coarse], 50))
-    yield Finding(
+    yield finding(
         "coarse-facets",
-        "info",
         f"{100 * share:.0f} % of its surface is coarser than the print: facets miss a round shape "
         f"by {worst:.2g} mm and will be seen.",
         "Export the model with a finer tolerance, if it is meant to be round.",
         value=worst,
         limit=limit,
-        unit="mm",
         area_mm2=float(area[coarse].sum()),
     )
 

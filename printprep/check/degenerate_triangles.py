@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -37,13 +38,11 @@ def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Fi
     if len(flat) < LEAST_SHARE * len(raw.faces) or len(flat) == 0:
         return
     x, y, z = corners[flat[0]].mean(axis=0).tolist()
-    yield Finding(
+    yield finding(
         "degenerate-triangles",
-        "info",
         f"{len(flat)} of its {len(raw.faces)} triangles have no area.",
         "Most programs drop them; merge close vertices where the model was made.",
         value=float(len(flat)),
         limit=LEAST_SHARE * len(raw.faces),
-        unit="triangles",
         at_mm=(x, y, z),
     )

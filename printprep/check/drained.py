@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -27,21 +28,17 @@ def drain_filled(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         total = sum(found.closed_mm3)
         count = len(found.closed_mm3)
         what = "A cavity" if count == 1 else f"{count} cavities"
-        yield Finding(
+        yield finding(
             "drain-filled",
-            "info",
             f"{what} of {total / 1000:.3g} cm³ stayed solid: no hole of {diameter:g} mm drains "
             f"{'it' if count == 1 else 'them'}.",
             "A smaller --drain-diameter reaches more, where the resin or powder runs through it.",
             value=total,
-            unit="mm3",
         )
     if found.filled_mm3 > FILLED_MM3:
-        yield Finding(
+        yield finding(
             "drain-filled",
-            "info",
             f"{found.filled_mm3 / 1000:.3g} cm³ of cavities' floors were filled, where liquid "
             "would have stood below every outlet.",
             value=found.filled_mm3,
-            unit="mm3",
         )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -32,14 +33,12 @@ def fits_bed(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if excess <= _SLACK:
         return
     axis = max(range(3), key=lambda index: best[index] / bed[index])
-    yield Finding(
+    yield finding(
         "fits-bed",
-        "error",
         f"The part is {_sides(size)} mm, the printer holds {_sides(bed)} mm.",
         _way_out(size, bed, excess),
         value=best[axis],
         limit=bed[axis],
-        unit="mm",
     )
 
 

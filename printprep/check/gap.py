@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -44,15 +45,13 @@ def gap(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     narrow = max(patches, key=lambda patch: patch.total_mm2)
     total = sum(patch.total_mm2 for patch in patches)
     least, place = narrow.thinnest
-    yield Finding(
+    yield finding(
         "gap",
-        "info",
         f"A gap of {least:.2f} mm may print closed: the profile asks for {limit:g} mm "
         f"({total:.0f} mm² of its sides).",
         "Widen the gap, or join what it parts.",
         value=least,
         limit=limit,
-        unit="mm",
         at_mm=place,
         area_mm2=total,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.stand.lean import tilt_toward
 from printprep.types import Advice, Finding
@@ -34,14 +35,12 @@ def lean_out_of_reach(context: CheckContext, profile: Profile) -> Iterator[Findi
     else:
         message = "No filling makes it stand: its weight lies outside its feet whatever is inside."
     del profile
-    yield Finding(
+    yield finding(
         "lean-out-of-reach",
-        "error",
         message,
         _ways_out(context.advice),
         value=reachable,
         limit=context.lean.angle_deg,
-        unit="deg",
         at_mm=context.stability.centre_of_mass_mm,
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.check.wall_thickness import FACETED
 from printprep.types import Finding
@@ -29,15 +30,13 @@ def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if rods.total_mm2 < LEAST_MM2:
         return
     least, place = rods.thinnest
-    yield Finding(
+    yield finding(
         "min-feature",
-        "warning",
         f"A pin or rod is {least:.2f} mm thick, the profile asks for {profile.min_feature_mm:g} mm "
         f"({rods.total_mm2:.0f} mm² of surface).",
         "Thicken it, or scale the model up (--size).",
         value=least,
         limit=profile.min_feature_mm,
-        unit="mm",
         at_mm=place,
         area_mm2=rods.total_mm2,
     )

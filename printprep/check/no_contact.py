@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -20,12 +21,10 @@ def no_contact(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     x, y, z = context.stability.centre_of_mass_mm
     layer = profile.printer.first_layer_mm
-    yield Finding(
+    yield finding(
         "no-contact",
-        "error",
         f"A body touches the bed nowhere in the first layer ({layer:g} mm): it cannot stand.",
         "Seat its feet (--base always), turn it (--up), or join the body to the rest.",
         value=0.0,
-        unit="mm2",
         at_mm=(x, y, z),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
@@ -25,13 +26,11 @@ def non_manifold_edges(context: CheckContext, profile: Profile) -> Iterator[Find
     if len(crowded) == 0:
         return
     x, y, z = context.raw.vertices[crowded[0]].mean(axis=0).tolist()
-    yield Finding(
+    yield finding(
         "non-manifold-edges",
-        "warning",
         f"At {len(crowded)} edges more than two triangles meet: bodies touch there along a line.",
         "Part them or let them overlap; `printprep hollow` does one or the other.",
         value=float(len(crowded)),
         limit=0.0,
-        unit="edges",
         at_mm=(x, y, z),
     )

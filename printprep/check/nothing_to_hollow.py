@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -18,9 +19,8 @@ def nothing_to_hollow(context: CheckContext, profile: Profile) -> Iterator[Findi
     """Prevents the surprise of a part that weighs what it did before."""
     if not context.hollowed or context.infilled or context.cavities:
         return
-    yield Finding(
+    yield finding(
         "nothing-to-hollow",
-        "info",
         "There is no cavity: the model is thin everywhere, or all of it is needed to stand. "
         "The part is solid.",
         f"A larger model (--size) or a thinner wall than {profile.wall_mm:g} mm (--wall) "

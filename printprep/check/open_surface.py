@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
@@ -25,13 +26,11 @@ def open_surface(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if len(open_) == 0:
         return
     x, y, z = context.raw.vertices[open_[0]].mean(axis=0).tolist()
-    yield Finding(
+    yield finding(
         "open-surface",
-        "error",
         f"The surface is open: {len(open_)} edges belong to an odd number of triangles.",
         "`printprep hollow` closes it, or repair it where it was made.",
         value=float(len(open_)),
         limit=0.0,
-        unit="edges",
         at_mm=(x, y, z),
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.orient import right_side_out
 from printprep.types import Finding
@@ -28,14 +29,12 @@ def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if len(turned) == 0:
         return
     x, y, z = raw.vertices[raw.faces[turned[0]]].mean(axis=0).tolist()
-    yield Finding(
+    yield finding(
         "orientation",
-        "warning",
         f"{len(turned)} of its {len(raw.faces)} triangles face inward: a slicer may take material "
         "for empty space.",
         "Turn them where the model was made; `printprep hollow` does too.",
         value=float(len(turned)),
         limit=0.0,
-        unit="triangles",
         at_mm=(x, y, z),
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.measure import arrays
 from printprep.types import Finding
@@ -43,15 +44,13 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     largest = int(np.argmax(np.where(hangs, doubled, 0)))
     x, y, z = corners[largest].mean(axis=0).tolist()
-    yield Finding(
+    yield finding(
         "overhang-area",
-        "info",
         f"{area:.0f} mm² of its surface hang over by more than {profile.overhang_deg:g}°: a slicer "
         "puts supports there.",
         "Another axis up (--up) or another pose (--pose) may need less.",
         value=area,
         limit=LEAST_MM2,
-        unit="mm2",
         at_mm=(x, y, z),
         area_mm2=area,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -22,13 +23,11 @@ def overlapping_shells(context: CheckContext, profile: Profile) -> Iterator[Find
         return
     at = self_intersections.at_mm[self_intersections.apart]
     x, y, z = at[0].tolist()
-    yield Finding(
+    yield finding(
         "overlapping-shells",
-        "info",
         f"Separate shells overlap at {len(at)} edges: a slicer prints what they cover together.",
         "Unite them where they were made; `printprep hollow` does too.",
         value=float(len(at)),
         limit=0.0,
-        unit="edges",
         at_mm=(x, y, z),
     )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import CATALOGUE
 from printprep.types import Finding, Severity
 
 if TYPE_CHECKING:
@@ -15,7 +16,8 @@ if TYPE_CHECKING:
 Rule = Callable[["CheckContext", "Profile"], Iterable[Finding]]
 
 _RANK: Mapping[Severity, int] = MappingProxyType({"info": 0, "warning": 1, "error": 2})
-_RULES: dict[str, Rule] = {}
+RULES: dict[str, Rule] = {}
+"""Every rule by its id; :func:`rule` puts one in."""
 
 
 def rule(rule_id: str) -> Callable[[Rule], Rule]:
@@ -25,22 +27,19 @@ def rule(rule_id: str) -> Callable[[Rule], Rule]:
     """
 
     def register(function: Rule) -> Rule:
-        if rule_id in _RULES:
+        if rule_id not in CATALOGUE:
+            raise ValueError(f"{rule_id} is not in the catalogue of findings")
+        if rule_id in RULES:
             raise ValueError(f"two rules are called {rule_id}")
-        _RULES[rule_id] = function
+        RULES[rule_id] = function
         return function
 
     return register
 
 
-def rules() -> Mapping[str, Rule]:
-    """Every rule by its id, sorted by id."""
-    return MappingProxyType(dict(sorted(_RULES.items())))
-
-
 def run_rules(context: CheckContext, profile: Profile) -> tuple[Finding, ...]:
     """What all rules find, the worst first, then by rule id, then as the rule gave them."""
-    found = [item for check in rules().values() for item in check(context, profile)]
+    found = [item for _, check in sorted(RULES.items()) for item in check(context, profile)]
     return sorted_findings(found)
 
 

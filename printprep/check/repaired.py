@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding, Severity
 
@@ -40,12 +41,11 @@ def repaired(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         severity = "info" if repair.rung == "union" else "warning"
         message = f"The file was judged as a solid; making it one took: {done} ({moved})."
         fix = "`printprep hollow` does the same repair and writes a sound part."
-    yield Finding(
+    yield finding(
         "repaired",
-        severity,
         message,
         fix,
+        severity=severity,
         value=moved_mm,
         limit=_MOVED_LIMIT_MM if context.hollowed else 0.0,
-        unit="mm",
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.measure import shells
 from printprep.types import Finding
@@ -14,8 +15,6 @@ from printprep.types import Finding
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
-
-_TRAPS = {"fdm": "air", "resin": "liquid resin", "powder": "powder"}
 
 
 @rule("sealed-cavity")
@@ -31,18 +30,17 @@ def sealed_cavity(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     x, y, z = np.reshape(largest.bounding_box(), (2, 3)).mean(axis=0).tolist()
     total_mm3 = float(sum(void.volume() for void in voids))
     count = "A sealed cavity holds" if len(voids) == 1 else f"{len(voids)} sealed cavities hold"
-    harmless = profile.process == "fdm"
+    harmless = not profile.traits.must_drain
     fix = (
         "Drill a drain and a vent into each (`printprep hollow` does, given the solid model), or"
         " print it with a process that leaves only air."
     )
-    yield Finding(
+    yield finding(
         "sealed-cavity",
-        "info" if harmless else "error",
-        f"{count} {total_mm3 / 1000:.3g} cm³ of {_TRAPS[profile.process]}.",
+        f"{count} {total_mm3 / 1000:.3g} cm³ of {profile.traits.cavity_holds}.",
         None if harmless else fix,
+        severity="info" if harmless else "error",
         value=total_mm3,
         limit=None if harmless else 0.0,
-        unit="mm3",
         at_mm=(x, y, z),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -22,13 +23,11 @@ def self_intersection(context: CheckContext, profile: Profile) -> Iterator[Findi
         return
     at = self_intersections.at_mm[~self_intersections.apart]
     x, y, z = at[0].tolist()
-    yield Finding(
+    yield finding(
         "self-intersection",
-        "warning",
         f"The surface passes through itself at {len(at)} edges: programs differ on what is inside.",
         "Unite it with itself in a modelling program: hollowing keeps what changes little.",
         value=float(len(at)),
         limit=0.0,
-        unit="edges",
         at_mm=(x, y, z),
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.stand.scene import MOST_LEAN_DEG
 from printprep.types import Finding
 
@@ -21,26 +22,22 @@ def simulation_findings(simulation: Simulation, lean: Lean) -> Iterator[Finding]
     """Falling by itself, tipping before the lean asked for, and disagreement with the figures."""
     settled = simulation.settled
     if not settled.stands:
-        yield Finding(
+        yield finding(
             "simulated-fall",
-            "error",
             f"Let go in simulation it falls: after {settled.seconds:g} s it has turned by "
             f"{settled.rotation_deg:.1f}°.",
             _FIX,
             value=settled.rotation_deg,
-            unit="deg",
         )
     first = first_to_tip(simulation, lean.azimuth_deg)
     if settled.stands and first is not None and held_deg(first) < lean.angle_deg:
-        yield Finding(
+        yield finding(
             "simulated-tip",
-            "error",
             f"In simulation its foot leaves the bed at a lean of {held_deg(first):.1f}° toward "
             f"azimuth {first.azimuth_deg:.0f}°; the lean asked for is {lean}.",
             _FIX,
             value=held_deg(first),
             limit=lean.angle_deg,
-            unit="deg",
         )
     yield from disagreements(simulation)
 
@@ -51,15 +48,13 @@ def disagreements(simulation: Simulation) -> Iterator[Finding]:
         return
     worst = max(simulation.tippings, key=gap_deg)
     if gap_deg(worst) > AGREES_WITHIN_DEG:
-        yield Finding(
+        yield finding(
             "simulation-disagrees",
-            "warning",
             f"Toward azimuth {worst.azimuth_deg:.0f}° its foot leaves the bed at "
             f"{held_deg(worst):.1f}° in simulation, {worst.computed_deg:.1f}° as computed.",
             "Trust the smaller of the two, and report the model.",
             value=gap_deg(worst),
             limit=AGREES_WITHIN_DEG,
-            unit="deg",
         )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.stand.lean import tilt_toward
 from printprep.types import Finding
@@ -34,13 +35,11 @@ def tilt(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         fix = (
             "Hollow the solid model with printprep, give it a larger base, or another pose (--up)."
         )
-    yield Finding(
+    yield finding(
         "tilt",
-        "error",
         f"{message} {context.lean}.",
         fix,
         value=tilt_deg,
         limit=context.lean.angle_deg,
-        unit="deg",
         at_mm=context.stability.centre_of_mass_mm,
     )

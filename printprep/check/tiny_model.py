@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -22,13 +23,11 @@ def tiny_model(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     side = max(context.size_mm)
     if side >= LEAST_SIDE_MM:
         return
-    yield Finding(
+    yield finding(
         "tiny-model",
-        "error",
         f"The longest side is {side:.3g} mm: the file is hardly in millimetres.",
         f"Name its unit (--units m makes it {1000 * side:.4g} mm), or its size "
         "(--size 100, or --scale).",
         value=side,
         limit=LEAST_SIDE_MM,
-        unit="mm",
     )

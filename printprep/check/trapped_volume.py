@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -24,7 +25,7 @@ def trapped_volume(context: CheckContext, profile: Profile) -> Iterator[Finding]
     """
     diameter = profile.drain.diameter_mm
     # Powder is shaken and blown out, whichever way the part stands.
-    if profile.process != "resin" or diameter is None:
+    if not profile.traits.leaves_pools or diameter is None:
         return
     pools = [pocket for pocket in context.pockets(diameter) if pocket.kind == "pool"]
     for enclosed in (True, False):
@@ -37,15 +38,14 @@ def _pools(found: list[Pocket], *, enclosed: bool) -> Finding:
     total = sum(pocket.volume_mm3 for pocket in found)
     largest = max(found, key=lambda pocket: pocket.volume_mm3)
     where = "inside it" if enclosed else "in its hollows"
-    return Finding(
+    return finding(
         "trapped-volume",
-        "warning" if enclosed else "info",
         f"As it stands {total / 1000:.3g} cm³ of resin stay {where}, the largest pool "
         f"{largest.depth_mm:.3g} mm deep.",
         "Turn the part over before it is cured, or put a drain at the lowest place.",
+        severity="warning" if enclosed else "info",
         value=total,
         limit=0.0,
-        unit="mm3",
         at_mm=largest.place_mm,
         volume_mm3=total,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -22,7 +23,7 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
 
     By the slicer's own rule, layer by layer; its loose pieces, which print on air, count at once.
     """
-    if profile.process != "fdm" or not context.cavities:
+    if not profile.traits.ceilings_sag or not context.cavities:
         return
     from printprep.check.walls import united
     from printprep.overhang.limits import acceptance
@@ -34,14 +35,12 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
         return
     count = "1 piece begins" if found.islands == 1 else f"{found.islands} pieces begin"
     islands = f", {count} on air" if found.islands else ""
-    yield Finding(
+    yield finding(
         "unsupported-ceiling",
-        "warning",
         f"Ceilings inside cavities overhang by {found.area_mm2:.1f} mm² over all layers{islands}; "
         "a slicer prints support there, which stays inside.",
         "Hollow it with supports of its own inside, as `printprep hollow` does for filament.",
         value=found.area_mm2,
         limit=AREA_MM2,
-        unit="mm2",
         at_mm=worst.at_mm,
     )

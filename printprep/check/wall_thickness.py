@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
 
@@ -34,15 +35,14 @@ def wall_thickness(context: CheckContext, profile: Profile) -> Iterator[Finding]
             fix = "Hollow it with a finer grid (--resolution), or report the model as a defect."
         else:
             fix = "Hollow the solid model again with this wall, or name the wall meant with --wall."
-        yield Finding(
+        yield finding(
             "wall-thickness",
-            "error",
             f"The thinnest wall between a cavity and the outside is {wall.value_mm:.2f} mm, "
             f"the profile asks for {profile.wall_mm:g} mm.",
             fix,
+            severity="error",
             value=wall.value_mm,
             limit=profile.wall_mm,
-            unit="mm",
             at_mm=wall.at_mm,
             area_mm2=context.thin_below(FACETED * profile.wall_mm).total_mm2,
         )
@@ -61,15 +61,14 @@ def _fins(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     told = hardly if hardly.total_mm2 >= LEAST_MM2 else fins
     least, place = told.thinnest
     bound = HARDLY * profile.wall_mm if told is hardly else profile.wall_mm
-    yield Finding(
+    yield finding(
         "wall-thickness",
-        "warning" if told is hardly else "info",
         f"{told.total_mm2:.0f} mm² of its surface stand on walls thinner than {bound:g} mm, the "
         f"thinnest {least:.2f} mm.",
         "Thicken these places, scale the model up (--size), or take care of them.",
+        severity="warning" if told is hardly else "info",
         value=least,
         limit=bound,
-        unit="mm",
         at_mm=place,
         area_mm2=told.total_mm2,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.quantize import crowded_edges, quantized_arrays
 from printprep.types import Finding
@@ -28,30 +29,30 @@ def watertight(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     del profile
     status = str(context.part.status().name)
     if status != "NoError":
-        yield Finding("watertight", "error", f"The part is not a manifold: {status}.", _FIX)
+        yield finding(
+            "watertight",
+            f"The part is not a manifold: {status}.",
+            _FIX,
+        )
         return
     vertices, faces = quantized_arrays(context.part)
     crowded = crowded_edges(faces)
     if len(crowded) and context.raw is None:
         x, y, z = vertices[crowded[0]].mean(axis=0).tolist()
-        yield Finding(
+        yield finding(
             "watertight",
-            "error",
             f"{len(crowded)} edges are not shared by exactly two triangles that face the same way.",
             _FIX,
             value=float(len(crowded)),
             limit=0.0,
-            unit="edges",
             at_mm=(x, y, z),
         )
     volume_mm3 = float(context.part.volume())
     if volume_mm3 <= 0:
-        yield Finding(
+        yield finding(
             "watertight",
-            "error",
             f"The surface encloses {volume_mm3:g} mm³: it is inside out or encloses nothing.",
             _FIX,
             value=volume_mm3,
             limit=0.0,
-            unit="mm3",
         )

@@ -8,9 +8,11 @@ from typing import Any
 import click
 
 from printprep.cli.options import (
+    exit_code,
     model_argument,
     output_form_options,
     overrides,
+    placement_of,
     placement_options,
     profile_options,
 )
@@ -33,11 +35,12 @@ def command(
     profile: str,
     settings: tuple[str, ...],
     wall_mm: float | None,
-    fail_on: Any,
+    lean: str | None,
+    fail_on: str,
     as_json: bool,
     quiet: bool,
     verbose: bool,
-    **options: Any,
+    **placement: Any,
 ) -> int:
     """Check MODEL (STL, OBJ, PLY, 3MF or GLB) against a profile; nothing is written.
 
@@ -45,28 +48,24 @@ def command(
     does not run out, suction cups, tilt angle against --lean, contact with the bed, and whether the
     printer can hold it.
     """
-    from printprep.check.registry import at_or_above
-    from printprep.cli.console import stdout_console, trouble_to_stderr
-    from printprep.pipeline.check import examine
+    from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
+    from printprep.pipeline.check import check
     from printprep.progress import for_terminal
+    from printprep.report.json import check_json
+    from printprep.report.terminal import show_check
 
-    found = examine(
+    found = check(
         model,
         profile=profile,
         overrides=overrides(settings, wall_mm),
+        placement=placement_of(placement),
+        lean=lean,
         progress=for_terminal(quiet=quiet),
-        **options,
     )
     if as_json:
-        from printprep.report.json import check_json, to_text
-
-        click.echo(
-            to_text(check_json(found.context, found.findings, found.profile, model=str(model)))
-        )
+        print_json(check_json(found, model=str(model)))
     elif quiet:
         trouble_to_stderr(found.findings)
     else:
-        from printprep.report.terminal import show_check
-
-        show_check(stdout_console(), found.context, found.findings, found.profile, verbose=verbose)
-    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0
+        show_check(stdout_console(), found, verbose=verbose)
+    return exit_code(found.findings, fail_on)

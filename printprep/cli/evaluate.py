@@ -151,7 +151,7 @@ def command(
     found = evaluate(models, chosen, output, voxels=voxels, workers=workers, told=told)
     write_tables(found, output)
     if as_json:
-        from printprep.report.json import to_text
+        from printprep.output.numbers import to_text
 
         click.echo(to_text(tables_json(found)))
     elif not quiet:

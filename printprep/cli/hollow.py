@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.drains import check_drains, check_plugs_output, drain_options, plug_findings
+from printprep.cli.drains import drain_options
 from printprep.cli.options import (
+    base_option,
     model_argument,
     output_form_options,
     overrides,
+    placement_of,
     placement_options,
     profile_options,
+    resolution_option,
     self_support_option,
+    severity_of,
 )
-from printprep.errors import UsageError
+from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
 from printprep.output.manual_settings import SLICERS
+from printprep.pipeline.fills import FILLS
+from printprep.pipeline.options import FillOptions
 
 if TYPE_CHECKING:
-    from printprep.progress import Progress
-    from printprep.types import HollowResult, SlicerName
-    from printprep.verify.run import Verified
+    from printprep.pipeline.job import JobResult
+    from printprep.types import SlicerName
 
 _EPILOG = """\b
 Examples:
@@ -47,7 +51,7 @@ Examples:
 )
 @click.option(
     "--for",
-    "slicer",
+    "written_for",
     type=click.Choice(SLICERS),
     default="prusa",
     show_default=True,
@@ -62,24 +66,18 @@ Examples:
     metavar="K",
     help="Lay the model into its K-th steadiest stable pose, the steadiest being 1.",
 )
-@click.option(
-    "--resolution",
-    type=int,
-    default=64,
-    show_default=True,
-    metavar="N",
-    help="Voxels along the longest side, for the optimization; walls are exact at any.",
-)
+@resolution_option
 @click.option(
     "--objective",
-    type=click.Choice(("lean", "paper")),
-    default="lean",
+    type=click.Choice(tuple(OBJECTIVES)),
+    default=DEFAULT_OBJECTIVE,
     show_default=True,
-    help="lean: the lightest part that stands at the lean. paper: DensiCrafter's weighted sum.",
+    help=". ".join(f"{name}: {row.summary}" for name, row in OBJECTIVES.items()) + ".",
 )
 @click.option(
     "--solver",
-    type=click.Choice(("plane", "adam")),
+    "solver_name",
+    type=click.Choice(tuple(dict.fromkeys(s for row in OBJECTIVES.values() for s in row.solvers))),
     default="plane",
     show_default=True,
     help="Of the paper's objective: its exact plane, or Adam as the paper descends.",
@@ -87,13 +85,7 @@ Examples:
 @click.option(
     "--device", default="cpu", show_default=True, help="Where Adam runs: cpu, cuda or cuda:N."
 )
-@click.option(
-    "--base",
-    type=click.Choice(("auto", "never", "always")),
-    default="auto",
-    show_default=True,
-    help="Whether feet may be seated and their footprint grown; auto: where it saves material.",
-)
+@base_option
 @click.option(
     "--simulate",
     is_flag=True,
@@ -130,11 +122,10 @@ Examples:
 )
 @click.option(
     "--fill",
-    type=click.Choice(("cavity", "infill")),
+    type=click.Choice(tuple(FILLS)),
     default="cavity",
     show_default=True,
-    help="cavity: hollow. infill: the profile's sparse infill carries the ceilings, and what must "
-    "weigh prints dense (filament and 3MF only).",
+    help=". ".join(f"{name}: {row.summary}" for name, row in FILLS.items()) + ".",
 )
 @click.option(
     "--slicer",
@@ -148,10 +139,14 @@ Examples:
 def command(
     model: Path,
     output: Path | None,
-    slicer: SlicerName,
+    written_for: SlicerName,
     profile: str,
     settings: tuple[str, ...],
     wall_mm: float | None,
+    lean: str | None,
+    pose: int | None,
+    solver_name: str,
+    device: str,
     simulate: bool,
     verify_it: bool,
     drain_count: int | None,
@@ -159,145 +154,71 @@ def command(
     no_drains: bool,
     plugs: Path | None,
     prusa_slicer: Path | None,
+    resolution: int,
+    objective: str,
+    base: Any,
+    self_support: bool | None,
+    fill: str,
     fail_on: str,
     as_json: bool,
     quiet: bool,
     verbose: bool,
-    **options: Any,
+    **placement: Any,
 ) -> int:
     """Hollow MODEL (STL, OBJ, PLY, 3MF or GLB; or voxels, NPZ, NPY or PT) and write the part.
 
     The part is the lightest that still stands when leaned by --lean, with no wall thinner than the
     profile's. Its outside is the model's, but for a base under its feet where that saves material.
-    With --fail-on, nothing is written when a finding is as severe.
     """
-    from printprep.output.manual_settings import check_slicer
-    from printprep.output.part_file import check_output, format_findings, write_part
-    from printprep.output.plugs import write_plugs
-    from printprep.pipeline.hollow import hollow
-    from printprep.profiles import load_profile
+    from printprep.pipeline.job import Job, run_job
     from printprep.progress import for_terminal
 
-    target = Path(f"{model.stem}-hollow.3mf") if output is None else output
-    check_output(target)
-    _refuse_to_replace(model, target)
-    progress = for_terminal(quiet=quiet)
-    drains = drain_options(drain_count, drain_diameter_mm, no_drains)
-    changed = overrides(settings, wall_mm, drains)
-    loaded = load_profile(profile, changed)
-    check_slicer(loaded, slicer)
-    check_drains(loaded, drain_diameter_mm, plugs)
-    if plugs is not None:
-        check_plugs_output(plugs, target, model)
-    if options["fill"] == "infill":
-        _check_infill(target, slicer, simulate=simulate)
-    if verify_it:
-        from printprep.verify.unwritten import check_verifiable
-
-        check_verifiable(target, profile, changed)
-    result = hollow(
-        model,
+    job = Job(
+        model=model,
+        output=Path(f"{model.stem}-hollow.3mf") if output is None else output,
         profile=profile,
-        overrides=changed,
-        slicer=prusa_slicer,
-        progress=progress,
-        **options,
+        overrides=overrides(
+            settings, wall_mm, drain_options(drain_count, drain_diameter_mm, no_drains)
+        ),
+        placement=placement_of(placement, pose),
+        options=FillOptions(
+            fill=fill,
+            lean=lean,
+            resolution=resolution,
+            objective=objective,
+            solver=Solver(solver_name, device),
+            base=base,
+            self_support=self_support,
+            slicer=prusa_slicer,
+        ),
+        written_for=written_for,
+        plugs=plugs,
+        simulate=simulate,
+        verify=verify_it,
+        fail_on=severity_of(fail_on),
     )
-    result = _with_findings(result, format_findings(result.profile, target, slicer))
-    if plugs is not None:
-        result = _with_findings(result, plug_findings(result.drainage, plugs))
-    if simulate:
-        with progress.stage("simulate"):
-            result = _with_simulation(result)
-    verified = _verified(result, progress) if verify_it else None
-    # What one slicer makes of the part is told, but does not change the part's own file
-    found = result if verified is None else _with_findings(result, verified.findings)
-    stopped = _stopped(found, fail_on)
-    if not stopped:
-        with progress.stage("write"):
-            write_part(result, target, slicer)
-            if plugs is not None and result.drainage is not None and result.drainage.drains:
-                write_plugs(result, plugs)
-    written = None if stopped else target
-    _say(found, model, written, verified, as_json=as_json, quiet=quiet, verbose=verbose)
-    return 1 if stopped else 0
+    done = run_job(job, for_terminal(quiet=quiet))
+    _print(done, model, as_json=as_json, quiet=quiet, verbose=verbose)
+    return 1 if done.stopped else 0
 
 
-def _refuse_to_replace(model: Path, target: Path) -> None:
-    if target.exists() and model.exists() and target.samefile(model):
-        raise UsageError(
-            f"{target} is the model itself and would be replaced.", "Name another --output."
-        )
+def _print(done: JobResult, model: Path, *, as_json: bool, quiet: bool, verbose: bool) -> None:
+    from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
+    from printprep.report.json import result_json
+    from printprep.report.terminal import show_result
+    from printprep.report.verification import show_verified, verify_json
 
-
-def _check_infill(target: Path, slicer: SlicerName, *, simulate: bool) -> None:
-    from printprep.infill.options import check_infill_output
-
-    check_infill_output(target.suffix, slicer)
-    if simulate:
-        raise UsageError(
-            "The simulation takes the mesh for solid, which a print with infill is not.",
-            "Leave out --simulate; --verify measures the tilt in the G-code.",
-        )
-
-
-def _with_findings(result: HollowResult, more: tuple[Any, ...]) -> HollowResult:
-    from printprep.check.registry import sorted_findings
-
-    return replace(result, findings=sorted_findings([*result.findings, *more]))
-
-
-def _with_simulation(result: HollowResult) -> HollowResult:
-    from printprep.check.simulated import disagreements
-    from printprep.stand.trial import trial
-
-    found = trial(result.part.manifold, result.profile.printer.first_layer_mm, result.lean)
-    return _with_findings(replace(result, simulation=found), tuple(disagreements(found)))
-
-
-def _verified(result: HollowResult, progress: Progress) -> Verified:
-    from printprep.verify.unwritten import verify_result
-
-    return verify_result(result, progress=progress)
-
-
-def _stopped(result: HollowResult, fail_on: Any) -> bool:
-    from printprep.check.registry import at_or_above
-
-    return fail_on != "none" and bool(at_or_above(result.findings, fail_on))
-
-
-def _say(
-    result: HollowResult,
-    model: Path,
-    written: Path | None,
-    verified: Verified | None,
-    *,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool,
-) -> None:
-    from printprep.cli.console import stdout_console, trouble_to_stderr
-
-    output = None if written is None else str(written)
+    output = None if done.written is None else str(done.written)
     if as_json:
-        from printprep.report.json import result_json, to_text
-
-        said = result_json(result, model=str(model), output=output)
-        if verified is not None:
-            from printprep.report.verification import verify_json
-
-            said["verified"] = verify_json(verified, part=output)
-        click.echo(to_text(said))
+        report = result_json(done.result, done.findings, model=str(model), output=output)
+        if done.verified is not None:
+            report["verified"] = verify_json(done.verified, part=output)
+        print_json(report)
     elif quiet:
-        trouble_to_stderr(result.findings)
+        trouble_to_stderr(done.findings)
     else:
-        from printprep.report.terminal import show_result
-
         console = stdout_console()
-        show_result(console, result, output=output, verbose=verbose)
-        if verified is not None:
-            from printprep.report.verification import show_verified
-
+        show_result(console, done.result, done.findings, output=output, verbose=verbose)
+        if done.verified is not None:
             console.print()
-            show_verified(console, verified, with_findings=False)
+            show_verified(console, done.verified, with_findings=False)

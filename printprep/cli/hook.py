@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.options import DEFAULT_PROFILE, placement_options
+from printprep.cli.options import DEFAULT_PROFILE, placement_of, placement_options
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
+    from printprep.pipeline.options import Placement
     from printprep.types import Finding
 
 _EPILOG = """\b
@@ -103,7 +104,7 @@ def command(
         return 0
     if reslice:
         assert model is not None  # checked above
-        findings = _reslice(gcode, model, slicer, profile, lean, placement)
+        findings = _reslice(gcode, model, slicer, profile, lean, placement_of(placement))
     else:
         findings = _judge(gcode, part, profile, lean, strict=strict)
     failed = [item for item in findings if item.severity == "error"]
@@ -143,7 +144,7 @@ def _reslice(
     slicer: Path | None,
     profile: str,
     lean: str | None,
-    placement: dict[str, Any],
+    placement: Placement,
 ) -> Sequence[Finding]:
     from printprep.cli.console import trouble_to_stderr
     from printprep.hook.reslice import reslice

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
 
 from printprep.errors import UsageError
+from printprep.pipeline.options import Placement
+
+if TYPE_CHECKING:
+    from printprep.types import Finding, Severity
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -55,6 +59,35 @@ def placement_options(command: Command) -> Command:
     )(command)
 
 
+def placement_of(options: Mapping[str, Any], pose: int | None = None) -> Placement:
+    """What ``placement_options`` were given, as one value."""
+    return Placement(**options, pose=pose)
+
+
+def resolution_option(command: Command) -> Command:
+    """How fine the optimization is."""
+    return click.option(
+        "--resolution",
+        type=int,
+        default=64,
+        show_default=True,
+        metavar="N",
+        help="Voxels along the longest side, for the optimization; walls are exact at any.",
+    )(command)
+
+
+def base_option(command: Command) -> Command:
+    """Whether a base is allowed."""
+    return click.option(
+        "--base",
+        type=click.Choice(("auto", "never", "always")),
+        default="auto",
+        show_default=True,
+        help="Add a base under the feet (seat them, grow their footprint); auto: where that saves "
+        "material.",
+    )(command)
+
+
 def self_support_option(command: Command) -> Command:
     return click.option(
         "--self-support/--no-self-support",
@@ -64,18 +97,22 @@ def self_support_option(command: Command) -> Command:
     )(command)
 
 
+def profile_option(command: Command) -> Command:
+    """Printer, material and limits."""
+    return click.option(
+        "-p",
+        "--profile",
+        default=DEFAULT_PROFILE,
+        show_default=True,
+        metavar="NAME|FILE",
+        help="Printer, material and limits: a name from `printprep profiles`, or a TOML file.",
+    )(command)
+
+
 def profile_options(command: Command) -> Command:
     """Printer, material and limits, and single keys of them."""
     return _together(
-        click.option(
-            "-p",
-            "--profile",
-            default=DEFAULT_PROFILE,
-            show_default=True,
-            metavar="NAME|FILE",
-            help="Printer, material and limits: a name that `printprep profiles` lists, or a "
-            "TOML file.",
-        ),
+        profile_option,
         set_option,
         click.option(
             "--wall", "wall_mm", type=float, metavar="MM", help="Thinnest wall (key wall_mm)."
@@ -90,16 +127,34 @@ def profile_options(command: Command) -> Command:
     )(command)
 
 
+def fail_on_option(default: str) -> Callable[[Command], Command]:
+    """What counts as failing."""
+    return click.option(
+        "--fail-on",
+        type=click.Choice(("none", "info", "warning", "error")),
+        default=default,
+        show_default=True,
+        help="Exit with 1 when a finding is at least this severe; hollow then writes nothing.",
+    )
+
+
+def severity_of(fail_on: str) -> Severity | None:
+    """The severity that --fail-on names, None for none."""
+    return None if fail_on == "none" else cast("Severity", fail_on)
+
+
+def exit_code(findings: Sequence[Finding], fail_on: str) -> int:
+    """1 where a finding is at least as severe as --fail-on names, else 0."""
+    from printprep.check import at_or_above
+
+    severity = severity_of(fail_on)
+    return 1 if severity is not None and at_or_above(findings, severity) else 0
+
+
 def output_form_options(default_fail_on: str) -> Callable[[Command], Command]:
     """How to say what was found, and what counts as failing."""
     return _together(
-        click.option(
-            "--fail-on",
-            type=click.Choice(("none", "info", "warning", "error")),
-            default=default_fail_on,
-            show_default=True,
-            help="Exit with 1 when a finding is at least as severe.",
-        ),
+        fail_on_option(default_fail_on),
         json_option,
         click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr."),
         click.option(
@@ -124,6 +179,23 @@ def set_option(command: Command) -> Command:
         metavar="KEY=VALUE",
         help="Change a key of the profile, as printer.layer_height_mm=0.3. Repeatable.",
     )(command)
+
+
+def check_picture(path: Path | None, option: str, suffixes: Sequence[str]) -> None:
+    """Find out before the long work whether a picture can be written; None is no picture.
+
+    Raises UsageError for another suffix, OutputError for a folder that is missing or not writable.
+    """
+    from printprep.output.limits import check_writable
+
+    if path is None:
+        return
+    if path.suffix.lower() not in suffixes:
+        known = " or ".join(suffixes)
+        raise UsageError(
+            f"{path}: --{option} writes {known}.", f"Name a file that ends in {known}."
+        )
+    check_writable(path)
 
 
 def overrides(

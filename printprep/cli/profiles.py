@@ -45,7 +45,7 @@ def show_command(name: str, as_json: bool) -> None:
 
     profile = load_profile(name)
     if as_json:
-        from printprep.report.json import to_text
+        from printprep.output.numbers import to_text
 
         click.echo(to_text(profile.model_dump(mode="json")))
     else:
@@ -85,7 +85,7 @@ def _list(as_json: bool) -> None:
 
     profiles = [load_profile(name) for name in profile_names()]
     if as_json:
-        from printprep.report.json import to_text
+        from printprep.output.numbers import to_text
 
         click.echo(to_text({"profiles": [item.model_dump(mode="json") for item in profiles]}))
         return

@@ -65,7 +65,7 @@ def _usage(error: click.ClickException) -> tuple[str, str | None]:
 def _report(code: str, message: str, hint: str | None, exit_code: int, as_json: bool) -> int:
     message = " ".join(message.split())
     if as_json:
-        from printprep.report.json import to_text
+        from printprep.output.numbers import to_text
 
         click.echo(to_text({"error": {"code": code, "message": message, "hint": hint}}))
         return exit_code

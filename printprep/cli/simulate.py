@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from printprep.cli.options import (
+    check_picture,
+    exit_code,
     model_argument,
     output_form_options,
     overrides,
+    placement_of,
     placement_options,
     profile_options,
 )
-from printprep.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
-    from printprep.pipeline.simulate import TriedOut
+    from printprep.pipeline.simulate import Simulated
     from printprep.progress import Progress
 
 _EPILOG = """\b
@@ -52,11 +54,12 @@ def command(
     wall_mm: float | None,
     gif: Path | None,
     strip: Path | None,
-    fail_on: Any,
+    lean: str | None,
+    fail_on: str,
     as_json: bool,
     quiet: bool,
     verbose: bool,
-    **options: Any,
+    **placement: Any,
 ) -> int:
     """Simulate how MODEL (STL, OBJ, PLY, 3MF or GLB) stands; the model is not changed.
 
@@ -64,48 +67,37 @@ def command(
     the weakest edge's and the one that --lean names, until its foot leaves the bed and it goes
     over. The angles are set beside the computed ones, and against --lean.
     """
-    from printprep.check.registry import at_or_above
-    from printprep.cli.console import stdout_console, trouble_to_stderr
-    from printprep.pipeline.simulate import try_out
+    from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
+    from printprep.pipeline.simulate import simulate
     from printprep.progress import for_terminal
+    from printprep.report.json import simulate_json
+    from printprep.report.terminal import show_simulation
 
-    _check_picture(gif, ".gif")
-    _check_picture(strip, ".png")
+    for picture, option in ((gif, "gif"), (strip, "strip")):
+        check_picture(picture, option, _SUFFIXES[option])
     progress = for_terminal(quiet=quiet)
-    found = try_out(
-        model, profile=profile, overrides=overrides(settings, wall_mm), progress=progress, **options
+    found = simulate(
+        model,
+        profile=profile,
+        overrides=overrides(settings, wall_mm),
+        placement=placement_of(placement),
+        lean=lean,
+        progress=progress,
     )
     _draw(found, gif, strip, progress)
     if as_json:
-        from printprep.report.json import simulate_json, to_text
-
-        click.echo(to_text(simulate_json(found, model=str(model))))
+        print_json(simulate_json(found, model=str(model)))
     elif quiet:
         trouble_to_stderr(found.findings)
     else:
-        from printprep.report.terminal import show_simulation
-
         show_simulation(stdout_console(), found, verbose=verbose)
-    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0
+    return exit_code(found.findings, fail_on)
 
 
-def _check_picture(path: Path | None, suffix: str) -> None:
-    """Find out before the long work whether a picture can be written."""
-    if path is None:
-        return
-    if path.suffix.lower() != suffix:
-        raise UsageError(f"{path} is not named {suffix}.", f"--{_OPTION[suffix]} writes {suffix}.")
-    if not path.parent.is_dir():
-        raise OutputError(
-            f"{path} cannot be written: the folder {path.parent} does not exist.",
-            "Make the folder first, or name another one.",
-        )
+_SUFFIXES = {"gif": (".gif",), "strip": (".png",)}
 
 
-_OPTION = {".gif": "gif", ".png": "strip"}
-
-
-def _draw(found: TriedOut, gif: Path | None, strip: Path | None, progress: Progress) -> None:
+def _draw(found: Simulated, gif: Path | None, strip: Path | None, progress: Progress) -> None:
     if gif is None and strip is None:
         return
     from printprep.files import write_atomically

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
-from printprep.cli.options import json_option
+from printprep.cli.options import exit_code, fail_on_option, json_option
 
 _EPILOG = """\b
 Examples:
@@ -39,13 +38,7 @@ Examples:
     help="The model the part was made of: slice it too, with 15 % gyroid and with lightning "
     "infill, at walls as thick.",
 )
-@click.option(
-    "--fail-on",
-    type=click.Choice(("none", "info", "warning", "error")),
-    default="error",
-    show_default=True,
-    help="Exit with 1 when a finding is at least as severe.",
-)
+@fail_on_option("error")
 @json_option
 @click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr.")
 @click.option("-v", "--verbose", is_flag=True, help="The traceback of a defect.")
@@ -54,7 +47,7 @@ def command(
     slicer: Path | None,
     load: Path | None,
     compare_with: Path | None,
-    fail_on: Any,
+    fail_on: str,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -65,9 +58,9 @@ def command(
     whether anything is printed inside cavities, and, with supports switched on, whether they go
     there. Nothing is written.
     """
-    from printprep.check.registry import at_or_above
-    from printprep.cli.console import stdout_console, trouble_to_stderr
+    from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
     from printprep.progress import for_terminal
+    from printprep.report.verification import show_verified, verify_json
     from printprep.verify.run import verify
 
     del verbose  # read where errors are reported
@@ -79,14 +72,9 @@ def command(
         progress=for_terminal(quiet=quiet),
     )
     if as_json:
-        from printprep.report.json import to_text
-        from printprep.report.verification import verify_json
-
-        click.echo(to_text(verify_json(found, part=str(part))))
+        print_json(verify_json(found, part=str(part)))
     elif quiet:
         trouble_to_stderr(found.findings)
     else:
-        from printprep.report.verification import show_verified
-
         show_verified(stdout_console(), found)
-    return 1 if fail_on != "none" and at_or_above(found.findings, fail_on) else 0
+    return exit_code(found.findings, fail_on)

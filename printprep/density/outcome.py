@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from printprep.density.program import Choice, Program
-from printprep.grid.domain import with_base
 from printprep.types import Certificate, Density, Plane
-
-PaperSolver = Literal["plane", "adam"]
 
 
 def density_of(choice: Choice, program: Program, least: float = 0.0) -> Density:
@@ -44,43 +39,4 @@ def density_of(choice: Choice, program: Program, least: float = 0.0) -> Density:
             bound_g=choice.bound_mm3 * grams,
             gap=(choice.volume_mm3 - choice.bound_mm3) / choice.volume_mm3,
         ),
-    )
-
-
-def paper_density(
-    program: Program, choice: Choice, solver: PaperSolver = "plane", device: str = "cpu"
-) -> Density:
-    """The paper's objective on the same voxels: walls and base in mm, its terms in voxels.
-
-    solver : "plane", exact, or "adam", the paper's own descent, on a torch ``device``; Adam's
-    result has no plane, only densities.
-    """
-    from printprep.paper.domain import PaperDomain
-    from printprep.paper.objective import PaperSettings
-    from printprep.paper.plane import solve_plane
-
-    interior = program.interior
-    domain = (
-        interior.domain if choice.base is None else with_base(interior.domain, choice.base.manifold)
-    )
-    frozen = domain.shell | domain.base
-    free = domain.share > 0.5
-    solid = frozen | domain.free
-    ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
-    nothing = np.zeros_like(free)
-    voxels = PaperDomain(solid, solid & ~free, free, nothing, free, ground)
-    settings = PaperSettings(resolution=max(domain.grid.shape))
-    if solver == "adam":
-        from printprep.paper.adam import solve_adam
-
-        solution = solve_adam(voxels, settings, device=device)
-    else:
-        solution = solve_plane(voxels, settings)
-    plane = None if solution.plane is None else solution.plane.in_mm(domain.grid)
-    return Density(
-        rho=solution.smoothed,
-        planes=(plane,) * len(program.bodies),
-        aim_deg=None,
-        reachable_deg=None,
-        certificate=None,
     )

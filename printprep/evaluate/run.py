@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
+from functools import partial
 from pathlib import Path
 
-from printprep.errors import GeometryError, InputError, PrintprepError, UsageError
+from printprep.errors import GeometryError, InputError, PrintprepError
 from printprep.evaluate.cases import Case, DataSet
 from printprep.evaluate.measured import Measured, evaluate_case, make_folder
 from printprep.evaluate.methods import Method
 from printprep.evaluate.picture import Voxels
+from printprep.pool import run_each
 
 Told = Callable[[str, int, int], None]
 """Called with a model's name, how many are done and how many there are."""
@@ -52,14 +52,12 @@ def evaluate(
     OutputError : the folder cannot be written to.
     UsageError : fewer than one worker.
     """
-    if workers < 1:
-        raise UsageError(f"--workers {workers}: give a whole number of at least 1.")
     kept = folder / "results"
     make_folder(kept)
     found: dict[str, tuple[Measured, ...]] = {}
     failed: dict[str, PrintprepError] = {}
-    outcomes = _outcomes(models.cases, (tuple(chosen), kept, voxels), workers)
-    for done, (case, outcome) in enumerate(outcomes, start=1):
+    job = partial(_outcome, chosen=tuple(chosen), kept=kept, voxels=voxels)
+    for done, (case, outcome) in enumerate(run_each(job, models.cases, workers), start=1):
         if isinstance(outcome, PrintprepError):
             failed[case.name] = outcome
         else:
@@ -76,22 +74,6 @@ def evaluate(
 
 
 _Outcome = tuple[Measured, ...] | PrintprepError
-_Job = tuple[tuple[Method, ...], Path, Voxels]
-
-
-def _outcomes(cases: Sequence[Case], job: _Job, workers: int) -> Iterator[tuple[Case, _Outcome]]:
-    """Each case with what came of it, as they are done."""
-    if workers == 1 or len(cases) == 1:
-        for case in cases:
-            yield case, _outcome(case, *job)
-        return
-    # Processes begin afresh ("spawn") on every system: forking would copy threads' locks.
-    with ProcessPoolExecutor(min(workers, len(cases)), get_context("spawn")) as pool:
-        waiting: dict[Future[_Outcome], Case] = {
-            pool.submit(_outcome, case, *job): case for case in cases
-        }
-        for future in as_completed(waiting):
-            yield waiting[future], future.result()
 
 
 def _outcome(case: Case, chosen: tuple[Method, ...], kept: Path, voxels: Voxels) -> _Outcome:

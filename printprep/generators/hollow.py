@@ -1,39 +1,45 @@
-"""Hollow one sample of a generator's voxels; see the package's docstring for where it goes."""
+"""Hollow one sample of a generator's voxels; the package's docstring shows its use."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from printprep.arrays import Bool, Float
 from printprep.errors import UsageError
-from printprep.generators.form import occupancy
 from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.generators.voxel_arrays import occupancy
+from printprep.objectives import (
+    DEFAULT_OBJECTIVE,
+    PLANE,
+    Solver,
+    check_solver,
+    objective_of,
+)
 from printprep.paper.domain import (
-    Filling,
+    FillRule,
     PaperDomain,
     ShellRule,
     build_domain,
 )
 from printprep.paper.settings import PaperSettings
+from printprep.stand.lean import MOST_DEG
 
 Solve = Callable[[PaperDomain], Float]
-"""Density of a domain, (64, 64, 64) in [0, 1]: what is above one half is material."""
-
-Solver = Literal["plane", "adam"]
+"""The density of a domain, (64, 64, 64) in [0, 1]; above one half is material."""
 
 
 @dataclass(frozen=True, eq=False)
 class VoxelHollow:
-    """What to build, in the generator's own form, and what to leave out.
+    """The hollowed voxels, in the generator's own form, and the cavity.
 
-    material : V, the voxels to hand to the generator's second stage, in the form of the input
-        (coordinates with the same columns and number type, or a binary array; numpy or torch).
+    material : V, the voxels for the generator's second stage, in the form of the input: coordinates
+        (n, 3) or (n, 4) with the same number type, or a binary array (64, 64, 64); numpy or torch.
     cavity : the surface of H, closed, in [-0.5, 0.5]³.
-    domain : shell, interior and base the density was found on.
+    domain : shell, interior and base of the voxels.
     density : (64, 64, 64) float64, ρ̃.
     cavity_voxels, material_voxels : (64, 64, 64) bool, H and V.
     mass_ratio : voxels of V over voxels of the filled solid, base included.
@@ -51,48 +57,53 @@ class VoxelHollow:
 def hollow(
     voxels: Any,
     *,
-    objective: Literal["lean", "paper"] = "paper",
+    objective: str = DEFAULT_OBJECTIVE,
     lean_deg: float = 10.0,
-    solver: Solver = "plane",
+    solver: str = PLANE,
     settings: PaperSettings | None = None,
     solve: Solve | None = None,
     batch: int = 0,
     device: str = "cpu",
     shell: ShellRule = "auto",
-    filling: Filling = "flood",
+    filling: FillRule = "flood",
 ) -> VoxelHollow:
-    """Fill the solid that voxels describe, optimize its interior, and hand the material back.
+    """Fill the solid that voxels describe, optimize its interior, and return the material.
 
     Parameters
     ----------
     voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see `form.occupancy`.
-    objective : "paper", the paper's terms, or "lean", the least material that stands at
-        ``lean_deg`` (see :mod:`printprep.paper.voxel_lean`).
-    solver : of the paper's terms: as a plane, or by Adam (on ``device``).
+    objective : a name in :data:`printprep.objectives.OBJECTIVES`: "lean", the least material that
+        stands at ``lean_deg`` (:mod:`printprep.paper.voxel_lean`), or "paper", the paper's terms.
+    solver : of the paper's terms: "plane", or "adam" on ``device``.
     settings : the paper's parameters; None for its values.
-    solve : another program in place of the paper's: a function from the domain to a density.
-    batch : which sample of a batched tensor; its number is kept in the result's batch column.
-    shell, filling : see `build_domain`; a surface that leaks wants filling="slices".
+    solve : a function from the domain to a density, in place of the objective.
+    batch : the sample of a batched tensor; the result's batch column keeps its number.
+    shell, filling : see `build_domain`; a surface that leaks needs filling="slices".
 
     Raises
     ------
-    InputError : the voxels cannot be read as such.
+    InputError : the input is not voxels.
     UsageError : options that exclude each other, or that do not exist.
     """
     occupied, form = occupancy(voxels, batch=batch)
     chosen = settings or PaperSettings()
-    if solve is None:
-        solve = (
-            _lean(lean_deg, solver, device)
-            if objective == "lean"
-            else _paper(objective, solver, chosen, device)
+    how = Solver(solver, device)
+    if solve is not None and how != Solver():
+        raise UsageError(
+            "solver and device belong to an objective, not to solve.",
+            "Leave out solver and device, or solve.",
         )
-    elif (solver, device) != ("plane", "cpu"):
-        raise UsageError("solver and device belong to the paper's objective, not to solve")
+    row = objective_of(objective)
+    check_solver(row, how)
+    if not 0 <= lean_deg <= MOST_DEG:
+        raise UsageError(f"A lean of {lean_deg:g}° is not between 0° and {MOST_DEG:g}°.")
     domain = build_domain(occupied, chosen, shell=shell, filling=filling)
-    density = solve(domain)
+    density = row.on_voxels(domain, lean_deg, chosen, how) if solve is None else solve(domain)
     if density.shape != domain.shape:
-        raise UsageError(f"solve gave a density of shape {density.shape}, not {domain.shape}")
+        raise UsageError(
+            f"solve returns a density of shape {density.shape}, not {domain.shape}.",
+            "Return one number for each voxel of the domain.",
+        )
     material = domain.shell | (domain.free & (density > 0.5))
     cavity = domain.solid & ~material
     return VoxelHollow(
@@ -104,31 +115,3 @@ def hollow(
         material_voxels=material,
         mass_ratio=np.count_nonzero(material) / np.count_nonzero(domain.solid),
     )
-
-
-def _lean(lean_deg: float, solver: str, device: str) -> Solve:
-    if (solver, device) != ("plane", "cpu"):
-        raise UsageError("solver and device belong to the paper's objective, not to lean")
-    if not 0 <= lean_deg <= 60:
-        raise UsageError(f"a lean of {lean_deg:g}° is not between 0° and 60°")
-    from printprep.paper.voxel_lean import footprints, leanest
-
-    return lambda domain: leanest(domain, lean_deg, footprints(domain)).weight
-
-
-def _paper(objective: str, solver: str, settings: PaperSettings, device: str) -> Solve:
-    if objective != "paper":
-        raise UsageError(
-            f"objective {objective!r} is neither lean nor paper", "pass another as solve"
-        )
-    if solver == "plane":
-        if device != "cpu":
-            raise UsageError("the plane is solved on the cpu", "use solver adam with a device")
-        from printprep.paper.plane import solve_plane
-
-        return lambda domain: solve_plane(domain, settings).smoothed
-    if solver == "adam":
-        from printprep.paper.adam import solve_adam
-
-        return lambda domain: solve_adam(domain, settings, device=device).smoothed
-    raise UsageError(f"solver {solver!r} is not one of plane, adam")

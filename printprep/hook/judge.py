@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.check.catalogue import finding
 from printprep.types import Finding
 from printprep.version import __version__
 
@@ -101,25 +102,19 @@ def measured(gcode: Path, part: ComputedPart | None = None) -> Printed:
 
 def tips(printed: Printed, lean: Lean) -> Iterator[Finding]:
     """Whether a print would tip at the lean."""
-    from printprep.verify.rules import tilt_as_printed
+    from printprep.verify.rules import printed_tilt
 
-    tilt = tilt_as_printed(printed, lean)
-    if tilt < lean.angle_deg:
-        falls = "falls by itself" if tilt < 0 else f"tips at {tilt:.1f}°"
-        yield Finding(
-            "printed-tilt",
-            "error",
-            f"As printed it {falls}; it was to stand {lean}.",
-            "Print it with a brim that stays on, or hollow it: printprep hollow.",
-            tilt,
-            lean.angle_deg,
-            "°",
-        )
+    yield from printed_tilt(
+        printed,
+        lean,
+        promised_deg=lean.angle_deg,
+        fix="Print it with a brim that stays on, or hollow it: printprep hollow.",
+    )
 
 
 def notes(judged: JudgedPrint) -> list[str]:
     """What is written into the G-code: "key = value", nothing of the machine or the time."""
-    from printprep.verify.rules import tilt_as_printed
+    from printprep.gcode.stability import tilt_as_printed
 
     printed = judged.printed
     tilt = tilt_as_printed(printed, judged.lean)
@@ -173,9 +168,8 @@ def _alike(part: ComputedPart, printed: Printed) -> bool:
 
 def _elsewhere(part: ComputedPart, printed: Printed) -> Finding:
     sizes = " × ".join(f"{side:.1f}" for side in np.ptp(printed.bounds_mm, axis=0))
-    return Finding(
+    return finding(
         "another-print",
-        "warning",
         f"The G-code prints {sizes} mm, which is not the size of {part.file.name}: "
         "nothing else of it was compared.",
         "Slice that file alone, neither turned nor scaled.",
@@ -184,9 +178,8 @@ def _elsewhere(part: ComputedPart, printed: Printed) -> Finding:
 
 def _objects(printed: Printed) -> Iterator[Finding]:
     if len(printed.objects) > 1:
-        yield Finding(
+        yield finding(
             "several-objects",
-            "warning",
             f"The G-code prints {len(printed.objects)} objects; they are weighed and balanced "
             "as one.",
             "Export them one by one to judge each.",

@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from printprep.errors import InputError, ToolError
 from printprep.gcode.modal_state import numbers
 from printprep.hook.gcode_file import replace_content
 from printprep.hook.judge import JudgedPrint, guarded, measured, notes, same_size, tips
+from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
     from printprep.gcode.printed import Printed
     from printprep.profiles import Profile
+    from printprep.result import HollowResult
     from printprep.slicer.process import Slicer
-    from printprep.types import HollowResult
     from printprep.verify.part_3mf import ComputedPart
 
 _SAME_SHARE = 0.03  # of all material: what another place on the bed changes, and no modifier
@@ -50,7 +51,7 @@ def reslice(
     slicer: Path | None = None,
     profile: str = "fdm-pla-0.4",
     lean: str | None = None,
-    placement: Mapping[str, Any] | None = None,
+    placement: Placement = AS_IN_FILE,
     progress: Progress = SILENT,
 ) -> Resliced:
     """Hollow a model and put its G-code in place of the one given.
@@ -58,16 +59,16 @@ def reslice(
     Parameters
     ----------
     profile : what the G-code's own settings go over;  lean : as ``hollow`` takes it.
-    placement : ``up``, ``units``, ``scale``, ``height_mm``, ``size_mm`` as ``hollow`` takes them,
-        so that the model is placed as it was sliced.
+    placement : how the model lay when it was sliced.
 
     Raises
     ------
     InputError : the G-code cannot be sliced anew without loss;  ToolError : the slicer failed, or
         what it made is not the part that was computed.  The G-code is then as it was.
     """
-    from printprep.mesh.repair import repair
-    from printprep.pipeline.hollow import hollow, placed_model
+    from printprep.pipeline.hollow import hollow_with
+    from printprep.pipeline.options import FillOptions
+    from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
     from printprep.slicer.process import find_slicer
 
@@ -75,9 +76,7 @@ def reslice(
     _refuse_what_would_be_lost(gcode, before)
     program = find_slicer(slicer)
     found = load_profile(profile, overrides_from(before.slicer_summary.settings))
-    placed: dict[str, Any] = dict.fromkeys(("units", "scale", "height_mm", "size_mm"))
-    placed |= {"up": "+z", **(placement or {})}
-    solid = repair(placed_model(model, **placed)).manifold
+    solid = prepare(model, found, placement, progress).solid.manifold
     if not same_size(np.ptp(np.reshape(solid.bounding_box(), (2, 3)), 0), before):
         raise InputError(
             f"{gcode.name}: prints something of another size than {model.name}; {_LEFT}",
@@ -88,11 +87,11 @@ def reslice(
     with guarded(), tempfile.TemporaryDirectory(prefix="printprep-") as name:
         folder = Path(name)
         settings = _density(before, found)
-        with progress.stage("Slicing the model as it is"):
+        with progress.stage("slice-solid"):
             plain = _sliced_as_it_is(program, solid, at, settings, gcode, folder)
         _refuse_another(gcode, model, before, plain)
-        result = hollow(model, profile=found, lean=lean, progress=progress, **placed)
-        with progress.stage("Slicing it hollow"):
+        result = hollow_with(model, found, placement, FillOptions(lean=lean), progress)
+        with progress.stage("slice"):
             new, judged = _sliced_hollow(program, result, at, settings, gcode, folder)
         _refuse_unsound(gcode, before, judged)
         replace_content(gcode, new, [*notes(judged), f"replaced_mass_g = {before.mass_g:.3f}"])
@@ -226,22 +225,17 @@ def _sliced_hollow(
 
 def _write_part(result: HollowResult, at: tuple[float, float], target: Path) -> ComputedPart:
     """The part as a 3MF that puts it where the print was."""
-    from printprep.mesh.quantize import quantized, quantized_arrays
+    from printprep.mesh.quantize import quantized
+    from printprep.output.item import solid_item
+    from printprep.output.numbers import to_text
     from printprep.output.part_file import JSON_PART
-    from printprep.report.json import embedded_json, to_text
-    from printprep.threemf.write import Item, Volume, write_3mf
+    from printprep.threemf.write import write_3mf
     from printprep.verify.part_3mf import computed_part
 
-    vertices, faces = quantized_arrays(quantized(result.part.manifold))
     x0, y0, _, x1, y1, _ = result.solid.manifold.bounding_box()
-    x, y, z = at[0] - (x0 + x1) / 2, at[1] - (y0 + y1) / 2, -float(vertices[:, 2].min())
-    item = Item(
-        name=result.part.name,
-        volumes=[Volume(result.part.name, vertices, faces)],
-        settings=result.profile.object_settings,
-        translation_mm=(float(x), float(y), z),
-    )
-    figures = {JSON_PART: to_text(embedded_json(result)).encode("ascii")}
+    at_mm = (float(at[0] - (x0 + x1) / 2), float(at[1] - (y0 + y1) / 2))
+    item = solid_item(quantized(result.part.manifold), result.part.name, result.profile, at_mm)
+    figures = {JSON_PART: to_text(result.figures().to_json()).encode("ascii")}
     target.write_bytes(write_3mf([item], attachments=figures))
     return computed_part(target)
 

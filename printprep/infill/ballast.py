@@ -17,14 +17,14 @@ from printprep.density.outcome import density_of
 from printprep.mesh.measure import together
 from printprep.stand.contact import contact_of
 from printprep.stand.lean import tilt_toward
-from printprep.stand.stability import balanced, least
+from printprep.stand.stability import balanced, least_stable
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float
     from printprep.density.program import BasePolicy, Choice, Program
-    from printprep.infill.test_print import TrialSlicer, Weighed
+    from printprep.infill.trial_print import TrialSlicer, Weighed
     from printprep.types import Density, Lean, Part, Solid, Stability
 
 
@@ -36,7 +36,7 @@ MOST_PRINTS = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Filled:
+class Ballasted:
     """A part with its ballast.
 
     moments : (4,) mm³ and mm⁴ of the whole print;  ballast_mm3 : what the ballast adds to it.
@@ -47,30 +47,30 @@ class Filled:
     ballast: tuple[Manifold, ...]
     moments: Float
     ballast_mm3: float
-    standing: Stability
+    stability: Stability
 
 
-def settle_estimated(solid: Solid, program: Program, choice: Choice, sparse: float) -> Filled:
+def estimated_ballast(solid: Solid, program: Program, choice: Choice, sparse: float) -> Ballasted:
     """A choice as it is weighed without a slicer; sparse : density of what is not filled."""
     moments = sum((part.moments for part in choice.parts), np.zeros(4))
-    return Filled(
+    return Ballasted(
         density=density_of(choice, program, sparse),
         part=make_part(solid, choice.base, ()),
         ballast=_ballast(program, choice),
         moments=moments,
         ballast_mm3=float(moments[0] - program.unfilled(choice.base).sum(axis=0)[0]),
-        standing=stability_of_choice(program, choice),
+        stability=stability_of_choice(program, choice),
     )
 
 
-def settle_weighed(
+def weighed_ballast(
     solid: Solid,
     program: Program,
     policy: BasePolicy,
     lean: Lean,
     sparse: float,
     trial_slicer: TrialSlicer,
-) -> Filled | None:
+) -> Ballasted | None:
     """The lightest filling found whose print stands at the lean, measured in its G-code.
 
     None where nothing of some body touches the bed: a slicer may refuse it.
@@ -85,22 +85,22 @@ def settle_weighed(
     # With several bodies another base might join them otherwise.
     one = len(program.bodies) == 1
     choice = program.choose(policy, lean) if one else program.solve(choice.base, lean, margin)
-    best: Filled | None = None
+    best: Ballasted | None = None
     for _ in range(MOST_PRINTS):
         density, part = density_of(choice, program, sparse), make_part(solid, choice.base, ())
         ballast = _ballast(program, choice)
         printed = trial_slicer.weigh(part, ballast, _apart(program, choice))
         added_mm3 = (printed.moments - unballasted.unfilled(choice.base)).sum(axis=0)[0]
-        found = Filled(
+        found = Ballasted(
             density=density,
             part=part,
             ballast=ballast,
             moments=printed.moments.sum(axis=0),
             ballast_mm3=float(added_mm3) if ballast else 0.0,
-            standing=least(printed.stabilities),
+            stability=least_stable(printed.stabilities),
         )
         best = found if best is None else _better(best, found, lean)
-        aim, tilt = density.aim_deg, tilt_toward(found.standing, lean)
+        aim, tilt = density.aim_deg, tilt_toward(found.stability, lean)
         if aim is None or tilt is None:
             break
         lost_deg = _by_sections(program, choice, printed, lean) - tilt
@@ -117,21 +117,23 @@ def settle_weighed(
 def stability_of_choice(program: Program, choice: Choice) -> Stability:
     """How a choice stands by its moments: its weakest body."""
     each = []
-    for (_, section, _), part in zip(program.standing(choice.base), choice.parts, strict=True):
+    for (_, section, _), part in zip(
+        program.bodies_on_base(choice.base), choice.parts, strict=True
+    ):
         x, y, z = (float(value) for value in part.moments[1:] / part.moments[0])
         each.append(balanced(contact_of(section), (x, y, z)))
-    return least(each)
+    return least_stable(each)
 
 
 def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean) -> float:
     """The tilt angle of a print by the sections of its feet, instead of their beads."""
     each = [
-        balanced(contact_of(section), standing.centre_of_mass_mm)
-        for (_, section, _), standing in zip(
-            program.standing(choice.base), printed.stabilities, strict=True
+        balanced(contact_of(section), found.centre_of_mass_mm)
+        for (_, section, _), found in zip(
+            program.bodies_on_base(choice.base), printed.stabilities, strict=True
         )
     ]
-    tilt = tilt_toward(least(each), lean)
+    tilt = tilt_toward(least_stable(each), lean)
     assert tilt is not None  # a choice with a solution has contact
     return tilt
 
@@ -164,9 +166,9 @@ def _corrected(program: Program, choice: Choice, difference: Float) -> Program:
     return program.weighing(moments)
 
 
-def _better(first: Filled, second: Filled, lean: Lean) -> Filled:
+def _better(first: Ballasted, second: Ballasted, lean: Lean) -> Ballasted:
     """The lighter of two that stand, else the one that stands farther."""
-    tilts = [tilt_toward(found.standing, lean) for found in (first, second)]
+    tilts = [tilt_toward(found.stability, lean) for found in (first, second)]
     one, other = (-np.inf if tilt is None else tilt for tilt in tilts)
     if min(one, other) >= lean.angle_deg:
         return second if second.moments[0] < first.moments[0] else first

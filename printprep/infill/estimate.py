@@ -32,6 +32,24 @@ LIGHTNING_MM = 1.75
 LIGHTNING_BELOW_MM = 10.0
 
 
+# The interior is weighed, not cut: it need not be as smooth as a cavity.
+CELLS_PER_WALL = 2.0
+
+
+def measured_depths(solid: Solid, profile: Profile, resolution: int) -> Depths:
+    """Depths below a solid's surface, fine where its infill begins; resolution in voxels."""
+    from printprep.grid.depth import measure_depths
+
+    return measure_depths(
+        solid,
+        resolution=resolution,
+        wall_mm=shell_mm(profile),
+        min_feature_mm=profile.min_feature_mm,
+        margin_mm=profile.stability.base_growth_max_mm,
+        cells_per_wall=CELLS_PER_WALL,
+    )
+
+
 def shell_mm(profile: Profile) -> float:
     """The depth at which the slicer's infill begins, on the mean over all slopes."""
     return SHELL_SHARE * float(np.mean(walls_mm(profile)))

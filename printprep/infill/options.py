@@ -1,4 +1,4 @@
-"""What goes together with an infill print, found out before the long work."""
+"""Which profiles and options go with an infill print: found out before the long work."""
 
 from __future__ import annotations
 
@@ -7,37 +7,25 @@ from typing import TYPE_CHECKING
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from printprep.profiles import Profile
-    from printprep.types import SlicerName
 
 
-def check_fill(
-    fill: str, profile: Profile, *, objective: str, self_support: bool, slicer: Path | None
-) -> None:
-    """Raise UsageError where an option belongs to the other way to fill, or the profile does."""
-    if fill == "cavity":
-        if slicer is not None:
-            raise UsageError(
-                "A slicer is asked only to weigh a print with infill.",
-                "Add --fill infill, or leave out --slicer.",
-            )
-        return
-    if profile.process != "fdm":
+def check_infill(profile: Profile, *, objective: str, self_support: bool) -> None:
+    """Raise UsageError where an option belongs to cavities, or the profile has no infill."""
+    if not profile.traits.has_nozzle:
         raise UsageError(
             f"Profile {profile.name} is for {profile.process}, which prints without infill.",
-            "Leave out --fill, or choose an fdm profile.",
+            "Leave out --fill, or choose a profile for filament.",
         )
     if profile.infill is None:
         raise UsageError(
-            f"Profile {profile.name} says nothing of infill.",
+            f"Profile {profile.name} has no infill.",
             "Add a table [infill] with pattern and density to it, or set them: "
             "--set infill.pattern=lightning --set infill.density=0.15.",
         )
     if objective != "lean":
         raise UsageError(
-            "The paper's objective carves cavities; it knows no sparse infill.",
+            f"The objective {objective} makes cavities; it has no sparse infill.",
             "Leave out --objective, or use --fill cavity.",
         )
     if self_support:
@@ -49,18 +37,4 @@ def check_fill(
         raise UsageError(
             "With infill there is no cavity to drain.",
             "Leave out --drains (key drain.count), or use --fill cavity.",
-        )
-
-
-def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:
-    """Raise UsageError for a file that cannot carry infill and ballast."""
-    if suffix.lower() != ".3mf":
-        raise UsageError(
-            f"A {suffix} file cannot carry infill and its ballast.",
-            "Name an --output that ends with .3mf.",
-        )
-    if slicer != "prusa":
-        raise UsageError(
-            f"Infill and its ballast are written in PrusaSlicer's words, not for {slicer}.",
-            "Leave out --for, or use --fill cavity.",
         )

@@ -1,4 +1,4 @@
-"""The part in a 3MF: one solid mesh, and a modifier over what prints dense."""
+"""The part in a 3MF: a solid mesh, and where infill fills it a modifier over what prints dense."""
 
 from __future__ import annotations
 
@@ -15,11 +15,28 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
 
 
-def item_of(part: Manifold, ballast: Sequence[Manifold], name: str, profile: Profile) -> Item:
-    """The part in the middle of the bed.
+def solid_item(
+    part: Manifold, name: str, profile: Profile, at_mm: tuple[float, float] | None = None
+) -> Item:
+    """A part that prints as its mesh says, cavities as inverted shells.
 
-    part : as written, on z = 0;  ballast : solids inside it or reaching out of it; where two
-    modifiers overlap the slicer prints once.
+    part : quantized;  at_mm : where its origin goes, None for the middle of the bed.
+    """
+    vertices, faces = quantized_arrays(part)
+    x, y = middle_of_bed(profile) if at_mm is None else at_mm
+    return Item(
+        name=name,
+        volumes=[Volume(name, vertices, faces)],
+        settings=profile.object_settings,
+        translation_mm=(x, y, 0.0 - float(vertices[:, 2].min())),
+    )
+
+
+def infill_item(part: Manifold, ballast: Sequence[Manifold], name: str, profile: Profile) -> Item:
+    """A part with the slicer's infill inside, in the middle of the bed.
+
+    part : quantized;  ballast : solids inside it or reaching out of it; where two modifiers
+    overlap the slicer prints once.
     """
     vertices, faces = quantized_arrays(part)
     volumes = [Volume(name, vertices, faces)]
@@ -37,6 +54,6 @@ def item_of(part: Manifold, ballast: Sequence[Manifold], name: str, profile: Pro
 
 
 def middle_of_bed(profile: Profile) -> tuple[float, float]:
-    """Where a part's origin goes, mm."""
+    """Where a part's origin goes, (x, y) in mm."""
     width, depth, _ = profile.printer.bed_mm
     return width / 2, depth / 2

@@ -81,9 +81,9 @@ _WORDS: Mapping[str, _Words] = {
 
 def check_slicer(profile: Profile, slicer: SlicerName) -> None:
     """Raises UsageError where there is no such slicer: the process is not fdm."""
-    if slicer != "prusa" and profile.process != "fdm":
+    if slicer != "prusa" and not profile.traits.has_nozzle:
         raise UsageError(
-            f"Profile {profile.name} is for {profile.process}; a file for {slicer} is for fdm.",
+            f"--for {slicer} needs a filament profile; {profile.name} is for {profile.process}.",
             "Leave --for out.",
         )
 

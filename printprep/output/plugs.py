@@ -6,39 +6,43 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from printprep.types import HollowResult
+    from printprep.profiles import Profile
+    from printprep.types import Drainage, Part
 
 # Between two plugs, so that a slicer keeps their brims apart.
 GAP_MM = 5.0
 
 
-def write_plugs(result: HollowResult, path: str | Path) -> None:
+def write_plugs(part: Part, drainage: Drainage, profile: Profile, path: str | Path) -> None:
     """Write a plug for every drain, whole or not at all.
 
     Raises OutputError where the file cannot be written there, ValueError for a part without drains.
     """
     from printprep.files import write_atomically
 
-    write_atomically(Path(path), plugs_3mf(result))
+    write_atomically(Path(path), plugs_3mf(part, drainage, profile))
 
 
-def plugs_3mf(result: HollowResult) -> bytes:
-    """The file's content; the same result and version give the same bytes."""
+def plugs_3mf(part: Part, drainage: Drainage, profile: Profile) -> bytes:
+    """The file's content; the same part and version give the same bytes.
+
+    Raises ValueError for a part without drains.
+    """
     from printprep.drainage.plugs import plug
     from printprep.mesh.quantize import quantized, quantized_arrays
     from printprep.threemf.write import Item, Volume, write_3mf
     from printprep.version import __version__
 
-    drains = () if result.drainage is None else result.drainage.drains
+    drains = drainage.drains
     if not drains:
-        raise ValueError(f"{result.part.name} has no drains to plug")
-    width, depth, _ = result.profile.printer.bed_mm
+        raise ValueError(f"{part.name} has no drains to plug")
+    width, depth, _ = profile.printer.bed_mm
     pitch = max(drain.diameter_mm for drain in drains) + GAP_MM
     each_row = max(1, int((width - GAP_MM) // pitch))
     items = []
     for number, drain in enumerate(drains):
         name = f"plug {number + 1}, {drain.role}"
-        vertices, faces = quantized_arrays(quantized(plug(drain, result.part.outside)))
+        vertices, faces = quantized_arrays(quantized(plug(drain, part.outside)))
         row, place = divmod(number, each_row)
         in_row = min(each_row, len(drains) - row * each_row)
         middle = (width / 2 + (place - (in_row - 1) / 2) * pitch, depth / 2 + row * pitch)
@@ -46,5 +50,5 @@ def plugs_3mf(result: HollowResult) -> bytes:
         items.append(Item(name, [Volume(name, vertices, faces)], translation_mm=move))
     return write_3mf(
         items,
-        metadata={"Title": f"{result.part.name} plugs", "Application": f"printprep {__version__}"},
+        metadata={"Title": f"{part.name} plugs", "Application": f"printprep {__version__}"},
     )

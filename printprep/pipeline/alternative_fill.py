@@ -1,35 +1,34 @@
-"""What the way that was not taken would weigh: an estimate, on the same base, without a slicer."""
+"""What the part would weigh with another fill: an estimate, on the same base, without a slicer."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from printprep.pipeline.fills import FILLS
 from printprep.types import AlternativeFill
 
 if TYPE_CHECKING:
-    from printprep.grid.depth import Depths
-    from printprep.profiles import Profile
-    from printprep.types import Base, Fill, Lean, Solid
+    from printprep.pipeline.filled import Filled
+    from printprep.pipeline.prepare import Prepared
+    from printprep.types import Lean
 
 
 def alternative_fill(
-    taken: Fill, solid: Solid, depths: Depths, profile: Profile, base: Base | None, lean: Lean
+    taken: str, prepared: Prepared, filled: Filled, lean: Lean
 ) -> AlternativeFill | None:
-    """The other fill of a filament print; None where there is no choice.
+    """The lightest of the other fills; None where the profile has no infill to choose.
 
-    Supports inside a cavity are not counted.
+    Vaults inside a cavity are not counted.
     """
-    from printprep.density.program import Program
-    from printprep.infill.estimate import infill_program
-    from printprep.infill.moment_field import moment_field_of
-
+    profile = filled.profile
     if profile.infill is None:
         return None
-    other: Fill
-    if taken == "cavity":
-        other, program = "infill", infill_program(solid, depths, profile)
-    else:
-        interior = moment_field_of(depths, profile.wall_mm).interior(solid, depths)
-        other, program = "cavity", Program(solid.manifold, interior, profile)
-    found = program.solve(base, lean, profile.stability.lean_margin_deg)
-    return AlternativeFill(other, found.volume_mm3 * profile.material.density_g_cm3 / 1000)
+    base, grams_per_mm3 = filled.part.base, profile.material.density_g_cm3 / 1000
+    others = []
+    for name, fill in FILLS.items():
+        if name == taken:
+            continue
+        volume_mm3 = fill.estimate_mm3(prepared.solid, filled.depths, profile, base, lean)
+        if volume_mm3 is not None:
+            others.append(AlternativeFill(name, volume_mm3 * grams_per_mm3))
+    return min(others, key=lambda other: other.mass_g, default=None)

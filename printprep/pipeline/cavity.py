@@ -1,7 +1,8 @@
-"""Carve what was solved, weigh what was carved, and solve again where the surface lost some lean.
+"""The cavity: base, density, and the surface that is cut from the hollowable volume.
 
 The program sees voxels, the slicer sees a surface: cut at the plane, without the pieces too small
-to keep, simplified.  The part counts as standing only when that surface does.
+to keep, simplified.  The part counts as standing only when that surface stands, so where the
+surface lost some lean the program is solved again.
 """
 
 from __future__ import annotations
@@ -13,9 +14,11 @@ import numpy as np
 
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import isosurface
-from printprep.density.outcome import PaperSolver, density_of, paper_density
-from printprep.drainage.part import Drainer
+from printprep.drainage.drainer import Drainer
 from printprep.grid.distance import DepthField
+from printprep.objectives import objective_of
+from printprep.pipeline.filled import Filled
+from printprep.pipeline.hollowable import hollowable
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability
 
@@ -25,7 +28,10 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.density.program import Choice, Program
-    from printprep.profiles import Profile
+    from printprep.objectives import Objective, Solver
+    from printprep.pipeline.options import FillOptions
+    from printprep.pipeline.prepare import Prepared
+    from printprep.progress import Stopwatch
     from printprep.types import (
         Base,
         Density,
@@ -43,9 +49,41 @@ SAFETY_DEG = 0.02
 MOST_SOLVES = 6
 
 
+def fill_with_cavity(
+    prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch
+) -> Filled:
+    """The lightest part that stands at the lean, hollow."""
+    volume = hollowable(prepared, options, clock)
+    with clock.stage("base"):
+        program = volume.program(prepared.solid)
+        choice = program.choose(options.base, lean)
+    with clock.stage("solve"):
+        solved = solve_and_carve(
+            prepared.solid,
+            volume.manifold,
+            program,
+            choice,
+            lean,
+            objective=objective_of(options.objective),
+            solver=options.solver,
+            drainer=Drainer(volume.profile) if volume.profile.drain.count else None,
+        )
+    return Filled(
+        profile=volume.profile,
+        depths=volume.depths,
+        program=program,
+        density=solved.density,
+        part=solved.part,
+        stability=solved.stability,
+        volume_mm3=solved.part.manifold.volume(),
+        supports=volume.supports,
+        drainage=solved.drainage,
+    )
+
+
 @dataclass(frozen=True, eq=False)
-class Settled:
-    """What was solved, what came of it, and how that stands and drains (None: not asked to)."""
+class Carved:
+    """A density, the part carved from it, how that stands and drains (None: no drains asked)."""
 
     density: Density
     part: Part
@@ -53,81 +91,79 @@ class Settled:
     drainage: Drainage | None
 
 
-def settle_lean(
+def solve_and_carve(
     solid: Solid,
     hollowable_volume: Manifold,
     program: Program,
     choice: Choice,
     lean: Lean,
+    *,
+    objective: Objective,
+    solver: Solver,
     drainer: Drainer | None = None,
-) -> Settled:
-    """The part of the lightest filling whose final surface stands at the lean.
+) -> Carved:
+    """The part of an objective whose final surface stands at the lean, where the objective aims.
 
-    Where the lean is out of reach the part stands as far as the choice says.  Holes and what is
-    filled for them are weighed: once they are known, the program is solved again with them.
+    Where the lean is out of reach the part stands as far as the density says.  Drain holes and
+    what is filled for them are weighed: once they are known, the program is solved again with
+    them.
 
     Parameters
     ----------
-    hollowable_volume : all that may be cavity;  choice : base and first solution.
+    hollowable_volume : all that may be cavity;  choice : the base, and its first solution.
     """
-    bodies, weighed = program.bodies, False
-    margin = program.profile.stability.lean_margin_deg
+    profile, undrilled, holes_weighed = program.profile, program, False
+    margin_deg = profile.stability.lean_margin_deg
+    wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
     for _ in range(MOST_SOLVES):
-        density = density_of(choice, program)
-        part = carve(solid, choice.base, hollowable_volume, program.profile, bodies, density.planes)
+        density = wanted
+        part = carve(solid, choice.base, hollowable_volume, undrilled, density)
         drainage = None
         if drainer is not None:
             part, drainage = drainer.drain(part)
-        standing = stability(part.manifold, program.profile.printer.first_layer_mm)
-        if drainer is not None and drainage and not weighed:
-            weighed = True
+        stands = stability(part.manifold, profile.printer.first_layer_mm)
+        if not objective.aims_at_lean:
+            break
+        if drainer is not None and drainage and not holes_weighed:
+            holes_weighed = True
             if drainer.taken_mm3 > 0:
                 program = program.drilled(drainer.bores, hollowable_volume - drainer.filled)
-                choice = program.solve(choice.base, lean, margin)
+                wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
                 continue
-        tilt_deg = tilt_toward(standing, lean)
-        if choice.reached < np.inf or tilt_deg is None or tilt_deg >= lean.angle_deg:
+        tilt_deg = tilt_toward(stands, lean)
+        out_of_reach = density.reachable_deg is not None
+        if out_of_reach or tilt_deg is None or tilt_deg >= lean.angle_deg:
             break
-        margin += lean.angle_deg - tilt_deg + SAFETY_DEG
-        higher = program.solve(choice.base, lean, margin)
-        if density_of(higher, program).aim_deg == density.aim_deg:
+        margin_deg += lean.angle_deg - tilt_deg + SAFETY_DEG
+        wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
+        if wanted.aim_deg == density.aim_deg:
             break
-        choice = higher
-    return Settled(density, part, standing, drainage)
+    return Carved(density, part, stands, drainage)
 
 
-def settle_paper(
+def carve(
     solid: Solid,
+    base: Base | None,
     hollowable_volume: Manifold,
     program: Program,
-    choice: Choice,
-    solver: PaperSolver = "plane",
-    device: str = "cpu",
-    drainer: Drainer | None = None,
-) -> Settled:
-    """The part of the paper's objective, on the base that the lean program chose.
+    density: Density,
+) -> Part:
+    """The part with its cavity where the density leaves it empty.
 
-    The objective knows no lean: it stands as far as it stands.  One plane serves all bodies; where
-    Adam leaves densities instead, the cavity is where they are below one half.
+    program : the one that the solid was weighed in, before holes were drilled.
     """
-    density = paper_density(program, choice, solver, device)
-    if solver == "adam":
+    planes: Sequence[Plane | None] = density.planes or (None,) * len(program.bodies)
+    if density.planes is None:
         hollowable_volume = hollowable_volume ^ _below_half(density, program.interior.domain)
-    part = carve(
-        solid, choice.base, hollowable_volume, program.profile, program.bodies, density.planes
-    )
-    drainage = None
-    if drainer is not None:
-        part, drainage = drainer.drain(part)
-    standing = stability(part.manifold, program.profile.printer.first_layer_mm)
-    return Settled(density, part, standing, drainage)
+    void = cut(hollowable_volume, program.bodies, planes)
+    return make_part(solid, base, cavities_of(void, program.profile.min_feature_mm))
 
 
 def _below_half(density: Density, domain: Domain) -> Manifold:
     """Where the free voxels' density is below one half, and walls do not count.
 
-    Voxels that are not free take the density of the nearest that is: where the wall begins the
-    room for cavities says, to far below a voxel.
+    Voxels that are not free take the density of the nearest free one: the hollowable volume says
+    where the wall begins, far more finely than a voxel.
     """
     from scipy.ndimage import distance_transform_edt
 
@@ -137,16 +173,3 @@ def _below_half(density: Density, domain: Domain) -> Manifold:
     nearest = distance_transform_edt(~free, return_distances=False, return_indices=True)
     emptiness = (0.5 - density.rho[tuple(nearest)]).astype(np.float32)
     return isosurface(DepthField(domain.grid, emptiness), 0.0)
-
-
-def carve(
-    solid: Solid,
-    base: Base | None,
-    hollowable_volume: Manifold,
-    profile: Profile,
-    bodies: Sequence[Manifold],
-    planes: Sequence[Plane | None],
-) -> Part:
-    """The part with its cavity above the planes, one for each body of the solid."""
-    void = cut(hollowable_volume, bodies, planes)
-    return make_part(solid, base, cavities_of(void, profile.min_feature_mm))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -16,28 +17,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Examined:
+class Checked:
     """A file, what the rules found in it, and the profile they judged by."""
 
     context: CheckContext
     findings: tuple[Finding, ...]
     profile: Profile
 
+    @property
+    def mass_g(self) -> float:
+        """What the file weighs in the profile's material."""
+        return float(self.context.part.volume()) * self.profile.material.density_g_cm3 / 1000
 
-def examine(
+
+def check(
     model: str | Path,
     *,
     profile: str | Path | Profile = "fdm-pla-0.4",
     overrides: Mapping[str, object] | None = None,
-    units: str | None = None,
-    up: str = "+z",
-    scale: float | None = None,
-    height_mm: float | None = None,
-    size_mm: float | None = None,
+    placement: Placement = AS_IN_FILE,
     lean: float | str | Lean | None = None,
     progress: Progress = SILENT,
-) -> Examined:
-    """Run the rules on a file, placed as ``hollow`` would place it but otherwise as it came.
+) -> Checked:
+    """Run the rules on a file, placed as ``hollow`` places it but otherwise as it came.
 
     Parameters are those of :func:`printprep.hollow`.
 
@@ -46,22 +48,17 @@ def examine(
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
     from printprep.check import context_of_solid, run_rules
-    from printprep.mesh.place import place
-    from printprep.mesh.read import read_mesh
-    from printprep.mesh.repair import repair
+    from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
     from printprep.stand.lean import lean_of
     from printprep.stand.stability import stability
 
     settings = load_profile(profile, overrides or {})
     asked = lean_of(lean, settings.stability.lean_deg)
-    with progress.stage("read"):
-        raw = read_mesh(Path(model), units)
-        placed = place(raw, up=up, scale=scale, height_mm=height_mm, size_mm=size_mm)
-    with progress.stage("repair"):
-        solid = repair(placed)
+    found = prepare(model, settings, placement, progress)
+    solid = found.solid
     with progress.stage("check"):
-        standing = stability(solid.manifold, settings.printer.first_layer_mm)
-        context = context_of_solid(solid.manifold, standing, asked, solid.repair, placed)
+        stands = stability(solid.manifold, settings.printer.first_layer_mm)
+        context = context_of_solid(solid.manifold, stands, asked, solid.repair, found.model)
         findings = run_rules(context, settings)
-    return Examined(context, findings, settings)
+    return Checked(context, findings, settings)

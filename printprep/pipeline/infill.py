@@ -1,161 +1,85 @@
-"""The way of an infill print, from a solid to a part: room, program, slicer, checks."""
+"""The slicer's infill instead of a cavity, with dense ballast where weight is needed."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.infill.estimate import infill_program, shell_mm, sparse_share
+from printprep.check.catalogue import finding
+from printprep.infill.ballast import estimated_ballast, weighed_ballast
+from printprep.infill.estimate import infill_program, measured_depths, sparse_share
+from printprep.infill.trial_print import TrialSlicer
 from printprep.output.prusa_keys import layers, lines
+from printprep.pipeline.filled import Filled
+from printprep.slicer.child import INSTALL_HINT
+from printprep.slicer.process import slicer_if_any
+from printprep.types import Finding, Infill
 
 if TYPE_CHECKING:
-    from printprep.density.program import BasePolicy
-    from printprep.grid.depth import Depths
-    from printprep.infill.ballast import Filled
-    from printprep.profiles import Profile
+    from printprep.infill.ballast import Ballasted
+    from printprep.pipeline.options import FillOptions
+    from printprep.pipeline.prepare import Prepared
     from printprep.progress import Stopwatch
-    from printprep.slicer.process import Slicer
-    from printprep.types import Finding, HollowResult, Lean, Model, Solid
-
-# The room is weighed, not cut: it need not be as smooth as a cavity.
-CELLS_PER_WALL = 2.0
+    from printprep.types import Lean
 
 
-def infilled(
-    placed: Model,
-    solid: Solid,
-    profile: Profile,
-    lean: Lean,
-    *,
-    resolution: int,
-    base: BasePolicy,
-    slicer: Slicer | None,
-    clock: Stopwatch,
-) -> HollowResult:
+def fill_with_infill(
+    prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch
+) -> Filled:
     """The lightest print with sparse infill that stands at the lean.
 
-    slicer : weighs the prints; None: they are estimated.
+    A slicer weighs the prints where there is one; otherwise they are estimated, and a finding
+    says so.
     """
-    from printprep.check import CheckContext, run_rules
-    from printprep.check.registry import sorted_findings
-    from printprep.infill.ballast import settle_estimated, settle_weighed
-    from printprep.infill.test_print import TrialSlicer
-    from printprep.pipeline.alternative_fill import alternative_fill
-    from printprep.stand.poses import stable_poses
-    from printprep.stand.stability import stability
-    from printprep.types import Advice, HollowResult, Infill
-
-    assert profile.infill is not None  # see :func:`printprep.infill.options.check_fill`
+    solid, profile = prepared.solid, prepared.profile
+    assert profile.infill is not None  # see :func:`printprep.infill.options.check_infill`
+    slicer = slicer_if_any(options.slicer)
     sparse = sparse_share(profile.infill)
     with clock.stage("voxelize"):
-        depths = measured_depths(solid, profile, resolution)
+        depths = measured_depths(solid, profile, options.resolution)
         program = infill_program(solid, depths, profile)
-    found: Filled | None = None
+    found: Ballasted | None = None
     trial_slicer = None if slicer is None else TrialSlicer(slicer, profile)
     if trial_slicer is not None:
         with clock.stage("slice"):
-            found = settle_weighed(solid, program, base, lean, sparse, trial_slicer)
-    weighed = found is not None
+            found = weighed_ballast(solid, program, options.base, lean, sparse, trial_slicer)
+    weighed_with = trial_slicer if found is not None else None
     if found is None:
         with clock.stage("solve"):
-            found = settle_estimated(solid, program, program.choose(base, lean), sparse)
-    advice = None
-    if found.density.reachable_deg is not None:
-        with clock.stage("advice"):
-            tilts = tuple(pose.tilt_deg for pose in stable_poses(solid.manifold))
-            advice = Advice(program.growth_that_reaches(lean), tilts)
-    with clock.stage("other way"):
-        other = alternative_fill("infill", solid, depths, profile, found.part.base, lean)
-    grams = profile.material.density_g_cm3 / 1000
-    with clock.stage("check"):
-        context = CheckContext(
-            part=found.part.manifold,
-            outside=found.part.outside,
-            cavities=(),
-            stability=found.standing,
-            lean=lean,
-            repair=solid.repair,
-            hollowed=True,
-            infilled=True,
-            reachable_deg=found.density.reachable_deg,
-            advice=advice,
-        )
-        findings = list(run_rules(context, profile))
-        if not weighed:
-            findings.append(_only_estimated(trial_slicer is not None))
-        before = stability(solid.manifold, profile.printer.first_layer_mm)
-    return HollowResult(
-        model=placed,
-        solid=solid,
-        part=found.part,
+            choice = program.choose(options.base, lean)
+            found = estimated_ballast(solid, program, choice, sparse)
+    grams_per_mm3 = profile.material.density_g_cm3 / 1000
+    infill = Infill(
+        pattern=profile.infill.pattern,
+        density=profile.infill.density,
+        perimeters=lines(profile),
+        layers=layers(profile),
+        ballast=found.ballast,
+        ballast_g=found.ballast_mm3 * grams_per_mm3,
+        moments=found.moments,
+        slicer=None if weighed_with is None else weighed_with.slicer.name,
+        slices=0 if trial_slicer is None else trial_slicer.slices,
+    )
+    estimated = _only_estimated(trial_slicer is not None)
+    return Filled(
         profile=profile,
+        depths=depths,
+        program=program,
         density=found.density,
-        stability_solid=before,
-        stability=found.standing,
-        lean=lean,
-        solid_mass_g=solid.manifold.volume() * grams,
-        mass_g=float(found.moments[0]) * grams,
-        wall_min_mm=None,
-        findings=sorted_findings(findings),
-        advice=advice,
-        seconds=clock.seconds,
-        alternative_fill=other,
-        infill=Infill(
-            pattern=profile.infill.pattern,
-            density=profile.infill.density,
-            perimeters=lines(profile),
-            layers=layers(profile),
-            ballast=found.ballast,
-            ballast_g=found.ballast_mm3 * grams,
-            moments=found.moments,
-            slicer=trial_slicer.slicer.name if trial_slicer is not None and weighed else None,
-            slices=0 if trial_slicer is None else trial_slicer.slices,
-        ),
+        part=found.part,
+        stability=found.stability,
+        volume_mm3=float(found.moments[0]),
+        infill=infill,
+        findings=() if weighed_with is not None else (estimated,),
     )
-
-
-def measured_depths(solid: Solid, profile: Profile, resolution: int) -> Depths:
-    """Depths below a solid's surface, fine where its infill begins."""
-    from printprep.grid.depth import measure_depths
-
-    return measure_depths(
-        solid,
-        resolution=resolution,
-        wall_mm=shell_mm(profile),
-        min_feature_mm=profile.min_feature_mm,
-        margin_mm=profile.stability.base_growth_max_mm,
-        cells_per_wall=CELLS_PER_WALL,
-    )
-
-
-def slicer_at_hand(path: Path | None = None) -> Slicer | None:
-    """The slicer named, or one that is found; None where there is none to be found.
-
-    Raises ToolError where the one that was named does not answer.
-    """
-    import os
-
-    from printprep.errors import ToolError
-    from printprep.slicer.child import SLICER_VARIABLE
-    from printprep.slicer.process import find_slicer
-
-    try:
-        return find_slicer(path)
-    except ToolError:
-        if path is not None or os.environ.get(SLICER_VARIABLE):
-            raise
-        return None
 
 
 def _only_estimated(has_slicer: bool) -> Finding:
-    from printprep.slicer.child import INSTALL_HINT
-    from printprep.types import Finding
-
-    why = "Something of it does not touch the bed" if has_slicer else "No slicer was found"
-    fix = "Give it a base (--base auto)" if has_slicer else INSTALL_HINT
-    return Finding(
+    if has_slicer:
+        why, fix = "A body of it does not touch the bed", "Give it a base (--base auto)."
+    else:
+        why, fix = "No slicer was found", INSTALL_HINT
+    return finding(
         "infill-estimated",
-        "warning",
-        f"{why}: what it weighs and how it stands is estimated, not measured in its G-code.",
-        f"{fix[0].upper()}{fix[1:]}.",
+        f"{why}: mass and tilt angle are estimates, not measured in its G-code.",
+        fix,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from printprep.report.json import number
+from printprep.output.numbers import number
 from printprep.version import __version__
 
 if TYPE_CHECKING:

@@ -9,17 +9,17 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from printprep.report.json import base_mass_g
 from printprep.report.simulation import azimuth_table, simulated
 from printprep.stand.lean import tilt_toward
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.check.context import CheckContext
-    from printprep.pipeline.simulate import TriedOut
+    from printprep.pipeline.check import Checked
+    from printprep.pipeline.simulate import Simulated
     from printprep.profiles import Profile
-    from printprep.types import AlternativeFill, Drainage, Finding, HollowResult, Infill, Repair
+    from printprep.result import HollowResult
+    from printprep.types import AlternativeFill, Drainage, Finding, Infill, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information the table has already given.
@@ -29,18 +29,24 @@ _OWN = _TOLD | {"coarse-facets", "gap", "overhang-area", "trapped-volume", "wall
 
 
 def show_result(
-    console: Console, result: HollowResult, *, output: str | None, verbose: bool
+    console: Console,
+    result: HollowResult,
+    findings: Sequence[Finding] | None = None,
+    *,
+    output: str | None,
+    verbose: bool,
 ) -> None:
     """The summary of ``hollow``: what changed, what was found, and where the file is, if it is."""
     facts = _facts_table()
-    ratio = 100 * result.mass_g / result.solid_mass_g
     facts.add_row(
         "mass",
-        f"{_mass(result.solid_mass_g)} → {_mass(result.mass_g)} ({ratio:.0f} % of the solid)",
+        f"{_mass(result.solid_mass_g)} → {_mass(result.mass_g)} "
+        f"({100 * result.mass_ratio:.0f} % of the solid)",
     )
-    before = tilt_toward(result.stability_solid, result.lean)
-    after = tilt_toward(result.stability, result.lean)
-    facts.add_row("tips at", f"{_lean(before)} → {_lean(after)} (asked to stand {result.lean})")
+    facts.add_row(
+        "tips at",
+        f"{_lean(result.tilt_solid_deg)} → {_lean(result.tilt_deg)} (should stand {result.lean})",
+    )
     if result.wall_min_mm is not None:
         facts.add_row(
             "thinnest wall",
@@ -71,31 +77,25 @@ def show_result(
         stages = ", ".join(f"{stage} {value:.2f}" for stage, value in result.seconds.items())
         facts.add_row("seconds", f"{total:.2f} ({stages})")
     console.print(facts)
-    show_findings(console, result.findings, told=_TOLD if verbose else _OWN)
+    shown = result.findings if findings is None else findings
+    show_findings(console, shown, told=_TOLD if verbose else _OWN)
     console.print()
     if output is None:
-        console.print("Nothing written: a finding is as severe as --fail-on names.")
+        console.print("Not written: a finding reached the --fail-on level.")
         return
     console.print(Text.assemble("Written: ", (output, "bold")), soft_wrap=True)
     for sentence in _advice(result, output):
         console.print(Text(sentence))
 
 
-def show_check(
-    console: Console,
-    context: CheckContext,
-    findings: Sequence[Finding],
-    profile: Profile,
-    *,
-    verbose: bool,
-) -> None:
+def show_check(console: Console, found: Checked, *, verbose: bool) -> None:
     """The summary of ``check``."""
+    context, profile = found.context, found.profile
     facts = _facts_table()
     facts.add_row("size", " × ".join(f"{side:.4g}" for side in context.size_mm) + " mm")
-    mass_g = context.part.volume() * profile.material.density_g_cm3 / 1000
-    facts.add_row("mass", f"{_mass(mass_g)} in {profile.material.name}")
+    facts.add_row("mass", f"{_mass(found.mass_g)} in {profile.material.name}")
     tilt = _lean(tilt_toward(context.stability, context.lean))
-    facts.add_row("tips at", f"{tilt} (asked to stand {context.lean})")
+    facts.add_row("tips at", f"{tilt} (should stand {context.lean})")
     if context.wall is not None:
         facts.add_row(
             "thinnest wall", f"{context.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
@@ -106,17 +106,17 @@ def show_check(
         facts.add_row("triangles", f"{context.part.num_tri()}")
     _add_repair(facts, context.repair)
     console.print(facts)
-    show_findings(console, findings)
-    if not findings:
-        console.print("\nNothing to complain of.")
+    show_findings(console, found.findings)
+    if not found.findings:
+        console.print("\nNo issues found.")
 
 
-def show_simulation(console: Console, found: TriedOut, *, verbose: bool) -> None:
+def show_simulation(console: Console, found: Simulated, *, verbose: bool) -> None:
     """The summary of ``simulate``."""
     facts = _facts_table()
     facts.add_row(
         "tips at",
-        f"{_lean(tilt_toward(found.stability, found.lean))} (asked to stand {found.lean})",
+        f"{_lean(tilt_toward(found.stability, found.lean))} (should stand {found.lean})",
     )
     facts.add_row("simulated", simulated(found.simulation))
     if verbose:
@@ -172,8 +172,7 @@ def _supports(result: HollowResult) -> str:
     found = result.supports
     if found is None or not found.capitals:
         return "nothing: its ceilings print as they are"
-    grams = found.added_mm3 * result.profile.material.density_g_cm3 / 1000
-    words = f"vaults on {found.columns} columns, {_mass(grams)}"
+    words = f"vaults on {found.columns} columns, {_mass(result.supports_mass_g)}"
     if found.unsupported_mm2 or found.islands:
         words += f"; {found.unsupported_mm2:.1f} mm² still unsupported"
     return words
@@ -268,7 +267,7 @@ def _base(result: HollowResult) -> str:
     if base is None:
         return "none"
     grown = f", footprint grown by {base.growth_mm:.2g} mm" if base.growth_mm else ""
-    return f"feet seated {base.seat_mm:.2g} mm{grown}, {_mass(base_mass_g(result))}"
+    return f"feet seated {base.seat_mm:.2g} mm{grown}, {_mass(result.base_mass_g)}"
 
 
 def _add_repair(facts: Table, repair: Repair) -> None:
@@ -283,7 +282,7 @@ def _add_repair(facts: Table, repair: Repair) -> None:
 def _advice(result: HollowResult, output: str) -> list[str]:
     """How to print it: what the file cannot say itself."""
     profile = result.profile
-    if profile.process != "fdm":
+    if not profile.traits.has_nozzle:
         return []
     printer = profile.printer
     advice = [

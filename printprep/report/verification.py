@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from printprep.report.json import finding_json, number
-from printprep.verify.rules import (
-    centre_offset_mm,
-    contact_offset_mm,
-    tilt_as_printed,
-)
+from printprep.output.numbers import number
+from printprep.report.json import findings_json
 from printprep.version import __version__
 
 if TYPE_CHECKING:
@@ -37,17 +33,16 @@ def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
             "contact_area_mm2": number(carried.contact_area_mm2),
             "bodies": len(carried.bodies),
         },
-        "printed": printed_json(printed)
-        | {"tilt_deg": number(tilt_as_printed(printed, carried.lean))},
-        "mass_off": number(printed.mass_g / carried.mass_g - 1, 3),
-        "centre_off_mm": number(centre_offset_mm(carried, printed), 3),
-        "contact_off_mm": number(contact_offset_mm(carried, printed), 3),
+        "printed": printed_json(printed) | {"tilt_deg": number(found.tilt_deg)},
+        "mass_off": number(found.mass_off, 3),
+        "centre_off_mm": number(found.centre_off_mm, 3),
+        "contact_off_mm": number(found.contact_off_mm, 3),
         "support_in_cavities_mm3": None
         if found.supported is None
         else number(found.supported.support_in_cavities_mm3),
-        "others": [
+        "baselines": [
             {
-                "way": other.way,
+                "name": other.name,
                 "mass_g": number(other.mass_g),
                 "seconds": number(other.seconds),
                 "tilt_deg": number(other.tilt_deg),
@@ -55,7 +50,7 @@ def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
             for other in found.baselines
         ],
         "slicer_warnings": list(found.warnings),
-        "findings": [finding_json(item) for item in found.findings],
+        "findings": findings_json(found.findings),
     }
 
 
@@ -84,7 +79,7 @@ def printed_json(printed: Printed) -> dict[str, Any]:
 
 
 def show_verified(console: Console, found: Verified, *, with_findings: bool = True) -> None:
-    """The summary: computed against printed, then the other ways, then the findings."""
+    """The summary: computed against printed, then the usual ways to print, then the findings."""
     from rich.table import Table
 
     from printprep.report.terminal import show_findings
@@ -94,15 +89,15 @@ def show_verified(console: Console, found: Verified, *, with_findings: bool = Tr
     facts = Table.grid(padding=(0, 2, 0, 0))
     facts.add_column(style="dim", no_wrap=True)
     facts.add_column(overflow="fold")
-    off = 100 * (printed.mass_g / carried.mass_g - 1)
+    off = 100 * found.mass_off
     facts.add_row(
         "mass", f"{printed.mass_g:.2f} g printed, {carried.mass_g:.2f} g computed ({off:+.1f} %)"
     )
-    facts.add_row("centre of mass", f"{centre_offset_mm(carried, printed):.2f} mm apart")
-    tilt = tilt_as_printed(printed, carried.lean)
+    facts.add_row("centre of mass", f"{found.centre_off_mm:.2f} mm apart")
+    tilt = found.tilt_deg
     computed = "no contact" if carried.tilt_deg is None else f"{carried.tilt_deg:.1f}°"
     facts.add_row(
-        "tips at", f"{tilt:.1f}° printed, {computed} computed (asked to stand {carried.lean})"
+        "tips at", f"{tilt:.1f}° printed, {computed} computed (should stand {carried.lean})"
     )
     facts.add_row(
         "contact",
@@ -115,7 +110,7 @@ def show_verified(console: Console, found: Verified, *, with_findings: bool = Tr
     facts.add_row("time", _hours(printed.slicer_summary.seconds))
     for other in found.baselines:
         facts.add_row(
-            other.way,
+            other.name,
             f"{other.mass_g:.2f} g, {_hours(other.seconds)}, "
             + (f"tips at {other.tilt_deg:.1f}°" if other.tilt_deg >= 0 else "falls by itself"),
         )

@@ -1,4 +1,4 @@
-"""The room for cavities with its ceilings carried from inside, where the process needs that."""
+"""The hollowable volume with its ceilings carried by vaults, where the process needs that."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ if TYPE_CHECKING:
 
 
 def supports_wanted(asked: bool | None, profile: Profile) -> bool:
-    """Whether ceilings are to be carried; None leaves it to the process: filament sags.
+    """Whether vaults carry the ceilings; None asks for them where the process lets ceilings sag.
 
-    Raises UsageError where it is asked of a process whose ceilings need nothing.
+    Raises UsageError where vaults are asked for and ceilings of that process need none.
     """
-    if asked and profile.process != "fdm":
+    if asked and not profile.traits.ceilings_sag:
         raise UsageError(
-            f"Profile {profile.name} is for {profile.process}: cavities need no supports inside.",
-            "Leave --self-support out, or choose an fdm profile.",
+            f"Ceilings need no vaults in {profile.process} (profile {profile.name}).",
+            "Leave --self-support out, or choose a profile for filament.",
         )
-    return profile.process == "fdm" if asked is None else asked
+    return profile.traits.ceilings_sag if asked is None else asked
 
 
 def supported(hollowable_volume: Manifold, profile: Profile) -> tuple[Manifold, Supports]:
-    """The room with its ceilings carried, and by what."""
+    """The hollowable volume with its ceilings carried by vaults, and what the vaults are."""
     from printprep.supports import vaulted
     from printprep.types import Supports
 

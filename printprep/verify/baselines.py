@@ -1,4 +1,4 @@
-"""What the same model comes to when it is printed the usual ways, at walls as thick as the part's.
+"""What the model takes when it is printed the usual ways, with walls as thick as the part's.
 
 With the least lines and layers that are no thinner than the profile's wall: solid but for 15 %
 gyroid, and with lightning infill, which only holds up ceilings.
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from printprep.slicer.process import Slicer
     from printprep.verify.part_3mf import ComputedPart
 
-_WAYS = (
+_BASELINES = (
     ("15 % gyroid", {"fill_density": "15%", "fill_pattern": "gyroid"}),
     ("lightning infill", {"fill_density": "15%", "fill_pattern": "lightning"}),
 )
@@ -30,9 +30,9 @@ _SLACK_MM = 1.0  # between the model's size and the part's, beyond the base
 
 @dataclass(frozen=True)
 class Baseline:
-    """Another way to print: what it takes, and how it stands; seconds by the slicer's estimate."""
+    """A usual way to print: its mass, its tilt angle, and its seconds by the slicer's estimate."""
 
-    way: str
+    name: str
     mass_g: float
     seconds: float | None
     tilt_deg: float
@@ -63,24 +63,24 @@ def slice_baselines(
     load: Path | None,
     folder: Path,
 ) -> tuple[Baseline, ...]:
-    """Slice the model as it is, placed as the part is, once for each way.
+    """Slice the model as it is, placed as the part is, once for each usual way.
 
     Raises ToolError where the slicer fails.
     """
     from printprep.gcode.measure import measure_gcode
+    from printprep.gcode.stability import tilt_as_printed
     from printprep.mesh.write import to_bytes
     from printprep.output.prusa_keys import wall_keys
-    from printprep.verify.rules import tilt_as_printed
 
     stl = folder / "model.stl"
     stl.write_bytes(to_bytes(model, ".stl"))
     gcode = folder / "other.gcode"
     baselines = []
-    for way, infill in _WAYS:
+    for name, infill in _BASELINES:
         program.slice(stl, gcode, {**settings, **wall_keys(part.profile), **infill}, load)
         printed = measure_gcode(gcode)
         tilt = tilt_as_printed(printed, part.lean)
-        baselines.append(Baseline(way, printed.mass_g, printed.slicer_summary.seconds, tilt))
+        baselines.append(Baseline(name, printed.mass_g, printed.slicer_summary.seconds, tilt))
     return tuple(baselines)
 
 

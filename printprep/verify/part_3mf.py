@@ -1,11 +1,11 @@
-"""The part a 3MF of ours holds, with the figures it carries, where the slicer will see it."""
+"""A part that printprep wrote, read from its 3MF: its mesh and the figures it carries."""
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float
+    from printprep.output.figures import Figures
     from printprep.profiles import Profile
 
 
-_HOLLOW_IT = "make it with `printprep hollow MODEL -o PART.3mf`"
+_HOLLOW_IT = "Make it with `printprep hollow MODEL -o PART.3mf`."
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,62 +53,62 @@ class ComputedPart:
 
 
 def computed_part(path: str | Path) -> ComputedPart:
-    """Read PART.3mf.  Raises InputError where it is not ours, older than this, or broken."""
+    """Read PART.3mf.  Raises InputError where printprep did not write it, or it is broken."""
     from printprep.mesh.measure import bodies, shells, try_manifold
     from printprep.mesh.weld import weld
     from printprep.threemf.read import read_3mf
 
     path = Path(path)
     if path.is_file() and path.suffix.lower() != ".3mf":
-        raise InputError(f"{path.name}: carries no computed figures: it is no 3MF", _HOLLOW_IT)
+        raise InputError(f"{path.name} is not a 3MF, so it carries no figures.", _HOLLOW_IT)
     found = read_3mf(path)
-    said = _figures(path, found.attachments)
+    figures, profile = _figures(path, found.attachments)
     manifold, status = try_manifold(*weld(found.vertices, found.faces))
     if manifold.is_empty():
         raise InputError(
-            f"{path.name}: its mesh is not the solid that was written ({status})", _HOLLOW_IT
+            f"{path.name}: its mesh is not the solid that was written ({status}).", _HOLLOW_IT
         )
-    try:
-        low, high = np.array(said["bounds_mm"], dtype=float)
-        shift = np.array([*manifold.bounding_box()[:3]]) - low
-        contact = said["contact"] or {"polygon_mm": np.zeros((0, 3)), "area_mm2": 0.0}
-        moved = np.eye(4)
-        moved[:3, 3] = shift
-        profile = _profile(said)
-        return ComputedPart(
-            file=path,
-            mass_g=float(said["mass_g"]),
-            centre_mm=np.array(said["centre_of_mass_mm"], dtype=float) + shift,
-            tilt_deg=said["tilt_deg"],
-            lean=Lean(float(said["lean_deg"]), said["lean_azimuth_deg"]),
-            contact_polygon_mm=np.array(contact["polygon_mm"], dtype=float)[:, :2] + shift[:2],
-            contact_area_mm2=float(contact["area_mm2"]),
-            sure_polygon_mm=_sure(manifold, profile),
-            bodies=bodies(manifold),
-            size_mm=high - low,
-            middle_mm=(low + high) / 2 + shift,
-            placement=moved @ np.array(said["placement"], dtype=float),
-            cavities=shells(manifold)[1],
-            profile=profile,
-        )
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(
-            f"{path.name}: its figures are not those of this printprep ({error})", _HOLLOW_IT
-        ) from error
+    low, high = np.array(figures.bounds_mm)
+    shift = np.array([*manifold.bounding_box()[:3]]) - low
+    contact = figures.contact
+    polygon_mm = np.zeros((0, 2)) if contact is None else np.array(contact.polygon_mm)
+    moved = np.eye(4)
+    moved[:3, 3] = shift
+    return ComputedPart(
+        file=path,
+        mass_g=figures.mass_g,
+        centre_mm=np.array(figures.centre_of_mass_mm) + shift,
+        tilt_deg=figures.tilt_deg,
+        lean=Lean(figures.lean_deg, figures.lean_azimuth_deg),
+        contact_polygon_mm=polygon_mm + shift[:2],
+        contact_area_mm2=0.0 if contact is None else contact.area_mm2,
+        sure_polygon_mm=_sure(manifold, profile),
+        bodies=bodies(manifold),
+        size_mm=high - low,
+        middle_mm=(low + high) / 2 + shift,
+        placement=moved @ np.array(figures.placement),
+        cavities=shells(manifold)[1],
+        profile=profile,
+    )
 
 
-def _figures(path: Path, attachments: Any) -> dict[str, Any]:
+def _figures(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Profile]:
+    """The figures a 3MF carries, and the profile among them."""
+    from printprep.output.figures import Figures
+    from printprep.profiles import Profile
     from printprep.threemf.read import ATTACHMENT
 
     if ATTACHMENT not in attachments:
-        raise InputError(f"{path.name}: carries no {ATTACHMENT} with computed figures", _HOLLOW_IT)
+        raise InputError(f"{path.name} carries no figures: it has no {ATTACHMENT}.", _HOLLOW_IT)
     try:
-        said = json.loads(attachments[ATTACHMENT])
-    except ValueError as error:
-        raise InputError(f"{path.name}: {ATTACHMENT} is no JSON ({error})", _HOLLOW_IT) from error
-    if not isinstance(said, dict):
-        raise InputError(f"{path.name}: {ATTACHMENT} holds no figures", _HOLLOW_IT)
-    return said
+        figures = Figures.from_json(attachments[ATTACHMENT])
+        profile = Profile.model_validate({**figures.settings, "name": figures.profile})
+    except ValueError as error:  # pydantic's errors are among them
+        first = str(error).splitlines()[0]
+        raise InputError(
+            f"{path.name}: this printprep cannot read its figures: {first}.", _HOLLOW_IT
+        ) from error
+    return figures, profile
 
 
 def _sure(manifold: Manifold, profile: Profile) -> Float:
@@ -121,10 +122,3 @@ def _sure(manifold: Manifold, profile: Profile) -> Float:
     half = (profile.printer.line_width_mm or 0.0) / 2
     opened = contact_of(section.offset(-half, JoinType.Round).offset(half, JoinType.Round))
     return np.zeros((0, 2)) if opened is None else opened.polygon_mm
-
-
-def _profile(said: dict[str, Any]) -> Profile:
-    from printprep.profiles import Profile
-
-    profile: Profile = Profile.model_validate({**said["settings"], "name": said["profile"]})
-    return profile

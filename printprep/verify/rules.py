@@ -7,16 +7,17 @@ margin, and a slicer rounds beads and layers.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.types import Finding, Stability
+from printprep.check.catalogue import finding
+from printprep.gcode.stability import tilt_as_printed
+from printprep.types import Finding
 
 if TYPE_CHECKING:
     from printprep.arrays import Float
-    from printprep.gcode.printed import Balance, Printed
+    from printprep.gcode.printed import Printed
     from printprep.types import Lean
     from printprep.verify.part_3mf import ComputedPart
 
@@ -28,28 +29,6 @@ CONTACT_MM = 0.5  # a line
 FILAMENT_SHARE = 0.005
 
 _SETTINGS = "Slice it with the profile's settings: `printprep profiles export`."
-
-
-def standing(printed: Printed | Balance) -> Stability:
-    """A print or a body of it as a ``Stability``: judged by the same rules as a part."""
-    from printprep.stand.contact import Contact
-    from printprep.stand.stability import balanced
-
-    if printed.tilt_deg is None:
-        return balanced(None, printed.centre_of_mass_mm)
-    contact = Contact(printed.contact_polygon_mm, printed.contact_area_mm2)
-    return replace(balanced(contact, printed.centre_of_mass_mm), tilt_deg=printed.tilt_deg)
-
-
-def tilt_as_printed(printed: Printed, lean: Lean) -> float:
-    """The tilt angle of the weakest body, toward the lean's azimuth if it has one.
-
-    A body that does not touch the bed falls: −90.
-    """
-    from printprep.stand.lean import tilt_toward
-
-    tilts = [tilt_toward(standing(body), lean) for body in printed.bodies or (printed,)]
-    return min(-90.0 if tilt is None else tilt for tilt in tilts)
 
 
 def compare(part: ComputedPart, printed: Printed) -> Iterator[Finding]:
@@ -66,15 +45,13 @@ def support_inside(printed: Printed) -> Iterator[Finding]:
     """Whether supports, switched on, go where nobody gets them out."""
     inside_mm3 = printed.support_in_cavities_mm3
     if inside_mm3 > 0:
-        yield Finding(
+        yield finding(
             "support-in-cavity",
-            "error",
             f"With supports switched on, {inside_mm3 / 1000:.2g} cm³ of them fill cavities.",
             "Let supports start from the build plate only.",
-            inside_mm3,
-            0.0,
-            "mm³",
-            printed.in_cavities_at_mm,
+            value=inside_mm3,
+            limit=0.0,
+            at_mm=printed.in_cavities_at_mm,
         )
 
 
@@ -107,15 +84,13 @@ def _reach(polygon_mm: Float) -> Float:
 def _mass(part: ComputedPart, printed: Printed) -> Iterator[Finding]:
     share = printed.mass_g / part.mass_g - 1
     if abs(share) > MASS_SHARE:
-        yield Finding(
+        yield finding(
             "printed-mass",
-            "warning",
             f"The print weighs {printed.mass_g:.1f} g, {abs(share):.0%} "
             f"{'more' if share > 0 else 'less'} than the {part.mass_g:.1f} g computed.",
             _SETTINGS,
-            printed.mass_g,
-            part.mass_g,
-            "g",
+            value=printed.mass_g,
+            limit=part.mass_g,
         )
 
 
@@ -123,15 +98,13 @@ def _centre(part: ComputedPart, printed: Printed) -> Iterator[Finding]:
     offset, limit = centre_offset_mm(part, printed), centre_limit_mm(part)
     if offset > limit:
         x, y, z = printed.centre_of_mass_mm
-        yield Finding(
+        yield finding(
             "printed-centre-of-mass",
-            "warning",
             f"The print's centre of mass lies {offset:.2f} mm from the one computed.",
             _SETTINGS,
-            offset,
-            limit,
-            "mm",
-            (x, y, z),
+            value=offset,
+            limit=limit,
+            at_mm=(x, y, z),
         )
 
 
@@ -143,69 +116,77 @@ def centre_limit_mm(part: ComputedPart) -> float:
 def _contact(part: ComputedPart, printed: Printed) -> Iterator[Finding]:
     offset = contact_offset_mm(part, printed)
     if offset is not None and offset > CONTACT_MM:
-        yield Finding(
+        yield finding(
             "printed-contact",
-            "warning",
             f"The first layer's outline differs by {offset:.2f} mm from the one computed.",
             "Print it with the profile's first layer, line width and no elephant foot "
             "compensation.",
-            offset,
-            CONTACT_MM,
-            "mm",
+            value=offset,
+            limit=CONTACT_MM,
         )
 
 
 def _tilt(part: ComputedPart, printed: Printed) -> Iterator[Finding]:
-    tilt = tilt_as_printed(printed, part.lean)
     asked = part.lean.angle_deg
     # Where the lean is out of reach, the part promises only the tilt it has
     promised = -90.0 if part.tilt_deg is None else min(asked, part.tilt_deg)
-    if tilt < promised - LEAN_DEG or tilt < 0 <= promised:
-        falls = "falls by itself" if tilt < 0 else f"tips at {tilt:.1f}°"
-        yield Finding(
-            "printed-tilt",
-            "error",
-            f"As printed {_it(part)} {falls}; it was to stand {part.lean}.",
-            f"{_SETTINGS} A larger lean margin helps too: --set stability.lean_margin_deg=2.",
-            tilt,
-            promised,
-            "°",
-        )
+    bodies = len(part.bodies)
+    yield from printed_tilt(
+        printed,
+        part.lean,
+        promised_deg=promised,
+        tolerance_deg=LEAN_DEG,
+        what="the print" if bodies == 1 else f"the weakest of its {bodies} bodies",
+        fix=f"{_SETTINGS} A larger lean margin helps too: --set stability.lean_margin_deg=2.",
+    )
 
 
-def _it(part: ComputedPart) -> str:
-    return "it" if len(part.bodies) == 1 else f"the weakest of its {len(part.bodies)} bodies"
+def printed_tilt(
+    printed: Printed,
+    lean: Lean,
+    *,
+    promised_deg: float,
+    tolerance_deg: float = 0.0,
+    what: str = "the print",
+    fix: str,
+) -> Iterator[Finding]:
+    """Whether a print tips before a promised lean, or falls over by itself against the promise."""
+    tilt = tilt_as_printed(printed, lean)
+    if tilt >= promised_deg - tolerance_deg and not tilt < 0 <= promised_deg:
+        return
+    falls = "falls over by itself" if tilt < 0 else f"tips over at {tilt:.1f}°"
+    yield finding(
+        "printed-tilt",
+        f"As printed, {what} {falls}; it should stand {lean}.",
+        fix,
+        value=tilt,
+        limit=promised_deg,
+    )
 
 
 def _cavities(printed: Printed) -> Iterator[Finding]:
     if printed.in_cavities_mm3 > 0:
-        yield Finding(
+        yield finding(
             "filled-cavity",
-            "error",
             f"The slicer prints {printed.in_cavities_mm3 / 1000:.2g} cm³ inside cavities.",
             "Do not close holes or repair the model in the slicer (slicing mode: regular).",
-            printed.in_cavities_mm3,
-            0.0,
-            "mm³",
-            printed.in_cavities_at_mm,
+            value=printed.in_cavities_mm3,
+            limit=0.0,
+            at_mm=printed.in_cavities_at_mm,
         )
 
 
 def _own_count(printed: Printed) -> Iterator[Finding]:
     """The reader's own test: what it adds up is what the slicer counted."""
-    slicer_summary = printed.slicer_summary.filament_mm3
+    counted = printed.slicer_summary.filament_mm3
     # Slicers round to 0.01 cm³
-    if slicer_summary and abs(printed.filament_mm3 - slicer_summary) > max(
-        FILAMENT_SHARE * slicer_summary, 10.0
-    ):
-        yield Finding(
+    if counted and abs(printed.filament_mm3 - counted) > max(FILAMENT_SHARE * counted, 10.0):
+        yield finding(
             "filament-count",
-            "warning",
-            f"The slicer counts {slicer_summary / 1000:.2f} cm³ of filament, the moves add up to "
+            f"The slicer counts {counted / 1000:.2f} cm³ of filament, the moves add up to "
             f"{printed.filament_mm3 / 1000:.2f} cm³.",
             "Figures of this print are uncertain by as much; start G-code that prints is one "
             "cause.",
-            printed.filament_mm3,
-            slicer_summary,
-            "mm³",
+            value=printed.filament_mm3,
+            limit=counted,
         )

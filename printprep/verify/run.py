@@ -26,7 +26,9 @@ _SUPPORTS = {"support_material": "1", "support_material_auto": "1"}
 class Verified:
     """A part, the print of it, and where they differ.
 
-    slicer : its name and version;  printed : with the settings given;  supported : with supports
+    slicer : its name and version;  tilt_deg : of the print, toward the lean's azimuth;
+    mass_off : relative, centre_off_mm, contact_off_mm : how far the print is from the computed
+    figures;  printed : with the settings given;  supported : with supports
     switched on too, None for a part without cavities;  others : what the model printed in other
     ways comes to;  warnings : the slicer's own.
     """
@@ -34,6 +36,10 @@ class Verified:
     part: ComputedPart
     slicer: str
     printed: Printed
+    tilt_deg: float
+    mass_off: float
+    centre_off_mm: float
+    contact_off_mm: float | None
     supported: Printed | None
     baselines: tuple[Baseline, ...]
     warnings: tuple[str, ...]
@@ -63,12 +69,18 @@ def verify(
     ToolError : there is no slicer, or it failed.
     """
     from printprep.check.registry import sorted_findings
+    from printprep.gcode.stability import tilt_as_printed
     from printprep.slicer.process import find_slicer
     from printprep.verify.baselines import model_of, slice_baselines
     from printprep.verify.part_3mf import computed_part
-    from printprep.verify.rules import compare, support_inside
+    from printprep.verify.rules import (
+        centre_offset_mm,
+        compare,
+        contact_offset_mm,
+        support_inside,
+    )
 
-    with progress.stage("Reading the part"):
+    with progress.stage("read-part"):
         carried = computed_part(part)
         model = None if compare_with is None else model_of(carried, compare_with)
     settings = settings_for(carried, load)
@@ -76,24 +88,28 @@ def verify(
     findings: list[Finding] = []
     with tempfile.TemporaryDirectory(prefix="printprep-") as name:
         folder = Path(name)
-        with progress.stage("Slicing it"):
+        with progress.stage("slice"):
             printed, warnings = slice_and_measure(program, carried, settings, load, folder)
         findings += compare(carried, printed)
         supported = None
         if carried.cavities:
-            with progress.stage("Slicing it with supports switched on"):
+            with progress.stage("slice-supports"):
                 supported, _ = slice_and_measure(
                     program, carried, {**settings, **_SUPPORTS}, load, folder
                 )
             findings += support_inside(supported)
         baselines: tuple[Baseline, ...] = ()
         if model is not None:
-            with progress.stage("Slicing the model as it would be printed otherwise"):
+            with progress.stage("slice-baselines"):
                 baselines = slice_baselines(program, carried, model, settings, load, folder)
     return Verified(
         part=carried,
         slicer=program.name,
         printed=printed,
+        tilt_deg=tilt_as_printed(printed, carried.lean),
+        mass_off=printed.mass_g / carried.mass_g - 1,
+        centre_off_mm=centre_offset_mm(carried, printed),
+        contact_off_mm=contact_offset_mm(carried, printed),
         supported=supported,
         baselines=baselines,
         warnings=warnings,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,19 +11,16 @@ from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from printprep.profiles import Profile
-    from printprep.types import HollowResult
+    from printprep.result import HollowResult
     from printprep.verify.run import Verified
 
 
-def check_verifiable(
-    target: Path, profile: str | Path | Profile, overrides: Mapping[str, object]
-) -> None:
+def check_verifiable(target: Path, profile: Profile) -> None:
     """Find out before the long work whether a part can be verified.
 
-    Raises UsageError for a target that is no 3MF or a profile that is not fdm, ToolError where
-    there is no slicer.
+    Raises UsageError for a target that is no 3MF or a profile that is not for filament, ToolError
+    where there is no slicer.
     """
-    from printprep.profiles import load_profile
     from printprep.slicer.process import find_slicer
     from printprep.slicer.prusa_ini import profile_settings
 
@@ -33,7 +29,7 @@ def check_verifiable(
             f"{target}: only a 3MF carries the settings and figures to verify.",
             "Name an --output that ends with .3mf, or leave out --verify.",
         )
-    profile_settings(load_profile(profile, overrides))
+    profile_settings(profile)
     find_slicer()
 
 
@@ -47,5 +43,5 @@ def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verif
 
     with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
         part = Path(folder) / "part.3mf"
-        part.write_bytes(part_bytes(result, part.suffix))
+        part.write_bytes(part_bytes(result.contents(), part.suffix))
         return verify(part, progress=progress)

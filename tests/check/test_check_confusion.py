@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from check_cases import CASES, Case, found_in
 
-from printprep.check import rules
+from printprep.check import RULES
 
 # Rules about what was done to a part: a file as it came has no such circumstance.
 _OF_OURS = {"drain-filled", "lean-out-of-reach", "nothing-to-hollow", "watertight"}
@@ -22,4 +22,4 @@ def test_what_is_said_is_exactly_what_is_so(case: Case):
 
 def test_every_rule_has_a_case_that_fails_it():
     tried = {rule for case in CASES for rule, _ in case.wanted}
-    assert set(rules()) - _OF_OURS == tried
+    assert set(RULES) - _OF_OURS == tried

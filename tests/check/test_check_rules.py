@@ -10,7 +10,7 @@ import pytest
 from closed_form_parts import box, context, hollow_box, roofed
 from manifold3d import Manifold
 
-from printprep.check import rules, run_rules
+from printprep.check import RULES, run_rules
 from printprep.check.registry import at_or_above, rule
 from printprep.types import Finding, Repair, Stability
 
@@ -30,7 +30,7 @@ def test_a_sound_part_raises_nothing_but_information(fdm):
 
 
 def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
-    assert set(rules()) == {
+    assert set(RULES) == {
         "drain-filled",
         "coarse-facets",
         "contact-area",
@@ -58,7 +58,7 @@ def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
         "wall-thickness",
         "watertight",
     }
-    for check in rules().values():
+    for check in RULES.values():
         assert {"Prevents", "Tells"} & set((check.__doc__ or "").split())
 
 
@@ -272,5 +272,5 @@ class TestWatertight:
 
         open_sheet, status = try_manifold(np.eye(3), np.array([[0, 1, 2]]))
         assert status == "NotManifold"
-        (item,) = rules()["watertight"](replace(context(box(10)), part=open_sheet), fdm)
+        (item,) = RULES["watertight"](replace(context(box(10)), part=open_sheet), fdm)
         assert "NotManifold" in item.message

@@ -40,7 +40,7 @@ def test_figures_of_a_hollow_block(tmp_path, capsys, suffix):
 
 def test_what_hollow_writes_passes(tmp_path, capsys):
     path = tmp_path / "part.3mf"
-    write_part(hollow_result(with_base=True), path)
+    write_part(hollow_result(with_base=True).contents(), path)
     before = path.read_bytes()
     code, data = checked(capsys, str(path))
     assert code == 0

@@ -9,6 +9,7 @@ import pytest
 from closed_form_parts import hollow_result
 
 from printprep.cli.run import run
+from printprep.profiles import load_profile
 from printprep.types import Drain, Drainage
 
 DRAINS = Drainage(
@@ -26,11 +27,11 @@ def handed(monkeypatch, tmp_path):
     """What the command hands to the method, which finds a cube with ``drainage``."""
     seen: dict[str, object] = {"drainage": DRAINS}
 
-    def hollow(model, **options):
-        seen.update(options, model=model)
-        return hollow_result(profile=options["profile"], name=model.stem, drainage=seen["drainage"])
+    def hollow_with(model, profile, placement, options, progress):
+        seen.update(profile=profile, placement=placement, options=options, model=model)
+        return hollow_result(profile=profile, name=model.stem, drainage=seen["drainage"])
 
-    monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", hollow_with)
     monkeypatch.chdir(tmp_path)
     return seen
 
@@ -48,7 +49,7 @@ def handed(monkeypatch, tmp_path):
 )
 def test_options_change_the_profile(handed, options, keys):
     assert run(f"hollow m.stl -p resin-standard {options}".split()) == 0
-    assert handed["overrides"] == keys
+    assert handed["profile"] == load_profile("resin-standard", keys)
 
 
 @pytest.mark.parametrize(

@@ -116,5 +116,5 @@ def test_a_lean_out_of_reach_is_an_error_finding_and_still_a_part(column: Path):
 def test_a_lean_out_of_reach_writes_nothing_where_errors_may_not_be(column: Path):
     stopped = program(*COLUMN, "--fail-on", "error", folder=column)
     assert stopped.returncode == 1
-    assert "Nothing written" in stopped.stdout
+    assert "Not written" in stopped.stdout
     assert not (column / "column.3mf").exists()

@@ -29,7 +29,7 @@ def ends_with(monkeypatch, tmp_path):
         def hollow(*args, **kwargs):
             raise error
 
-        monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
+        monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", hollow)
 
     return arrange
 

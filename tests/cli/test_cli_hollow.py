@@ -12,6 +12,8 @@ import pytest
 from closed_form_parts import hollow_result
 
 from printprep.cli.run import run
+from printprep.pipeline.options import FillOptions, Placement
+from printprep.profiles import load_profile
 from printprep.types import Finding
 
 TILT = Finding("tilt", "error", "It tips.", "Use a base.")
@@ -22,12 +24,12 @@ def handed(monkeypatch, tmp_path):
     """What the command hands to the method; ``findings`` in it choose what the method finds."""
     seen: dict[str, object] = {"findings": None}
 
-    def hollow(model, **options):
-        seen.update(options, model=model)
+    def hollow_with(model, profile, placement, options, progress):
+        seen.update(model=model, profile=profile, placement=placement, options=options)
         changes = {} if seen["findings"] is None else {"findings": seen["findings"]}
-        return hollow_result(profile=options["profile"], name=model.stem, **changes)
+        return hollow_result(profile=profile, name=model.stem, **changes)
 
-    monkeypatch.setattr("printprep.pipeline.hollow.hollow", hollow)
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", hollow_with)
     monkeypatch.chdir(tmp_path)
     return seen
 
@@ -35,13 +37,9 @@ def handed(monkeypatch, tmp_path):
 def test_defaults_are_those_of_the_method(handed, capsys):
     assert run(["hollow", "in/model.stl"]) == 0
     assert handed["model"] == Path("in/model.stl")
-    expected = {
-        "profile": "fdm-pla-0.4", "overrides": {}, "units": None, "up": "+z", "scale": None,
-        "height_mm": None, "size_mm": None, "resolution": 64, "lean": None,
-        "objective": "lean", "solver": "plane", "device": "cpu", "base": "auto",
-        "self_support": None,
-    }  # fmt: skip
-    assert {key: handed[key] for key in expected} == expected
+    assert handed["profile"] == load_profile("fdm-pla-0.4")
+    assert handed["placement"] == Placement()
+    assert handed["options"] == FillOptions()
     assert Path("model-hollow.3mf").is_file()  # in the current folder, not beside the model
     assert "Written: model-hollow.3mf" in capsys.readouterr().out
 
@@ -53,14 +51,12 @@ def test_every_option_arrives(handed):
         "--size 4 --resolution 96 --objective paper --base never --fail-on error -q"
     )
     assert run(line.split()) == 0
-    expected = {
-        "profile": "fdm-petg-0.4", "units": "in", "up": "-y", "scale": 2.0, "height_mm": 3.0,
-        "size_mm": 4.0, "resolution": 96, "lean": "12.5", "objective": "paper", "base": "never",
-        "overrides": {
-            "printer.layer_height_mm": "0.15", "material.name": "PC", "wall_mm": 1.6,
-        },
-    }  # fmt: skip
-    assert {key: handed[key] for key in expected} == expected
+    overrides = {"printer.layer_height_mm": 0.15, "material.name": "PC", "wall_mm": 1.6}
+    assert handed["profile"] == load_profile("fdm-petg-0.4", overrides)
+    assert handed["placement"] == Placement("in", "-y", 2.0, 3.0, 4.0)
+    assert handed["options"] == FillOptions(
+        lean="12.5", resolution=96, objective="paper", base="never"
+    )
     assert Path("out.stl").is_file()
 
 
@@ -109,7 +105,7 @@ def test_stopped_it_says_so(handed, capsys):
     handed["findings"] = (TILT,)
     assert run(["hollow", "m.stl", "--fail-on", "error"]) == 1
     out = capsys.readouterr().out
-    assert "Nothing written" in out
+    assert "Not written" in out
     assert "Written:" not in out
     assert not list(Path().iterdir())
 
@@ -131,7 +127,7 @@ class TestBeforeTheLongWork:
     def test_unknown_suffix(self, handed, capsys):
         assert run(["hollow", "m.stl", "-o", "out.step"]) == 2
         assert "model" not in handed
-        assert ".step is no format" in capsys.readouterr().err
+        assert ".step is not a format" in capsys.readouterr().err
 
     def test_missing_folder(self, handed):
         assert run(["hollow", "m.stl", "-o", "nowhere/out.3mf"]) == 5

@@ -48,7 +48,7 @@ def test_a_lean_asked_for_and_not_reached_fails(folder, capsys):
     assert run(["simulate", path, "--lean", "20"]) == 1
     out = capsys.readouterr().out
     assert "simulated-tip" in out
-    assert "asked to stand 20°" in out
+    assert "should stand 20°" in out
 
 
 def test_a_lean_not_reached_that_may_be_is_an_error_line_alone(folder, capsys):
@@ -91,7 +91,7 @@ def test_what_cannot_be_meant_is_said_before_the_work(folder, monkeypatch, more,
 
 def test_hollow_simulates_on_request(monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("printprep.pipeline.hollow.hollow", lambda *_, **__: hollow_result())
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", lambda *_, **__: hollow_result())
     assert run(["hollow", "block.stl", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["simulation"] is None
     plain = (tmp_path / "block-hollow.3mf").read_bytes()
@@ -112,7 +112,7 @@ def test_hollow_simulates_on_request(monkeypatch, tmp_path, capsys):
 
 def test_hollow_says_when_simulation_disagrees(monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("printprep.pipeline.hollow.hollow", lambda *_, **__: hollow_result())
+    monkeypatch.setattr("printprep.pipeline.hollow.hollow_with", lambda *_, **__: hollow_result())
     other = Simulation(Settled(0.0, True, 10.0), (Tipping(0.0, 45.0, 31.0, 31.1),))
     monkeypatch.setattr("printprep.stand.trial.trial", lambda *_: other)
     line = ["hollow", "block.stl", "--simulate", "--json", "--fail-on", "warning"]

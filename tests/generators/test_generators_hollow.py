@@ -117,8 +117,8 @@ def test_solve_takes_another_program():
 
 def test_adam_and_plane_agree():
     settings = PaperSettings()
-    plane = hollow(_surface()[1], settings=settings)
-    adam = hollow(_surface()[1], settings=settings, solver="adam")
+    plane = hollow(_surface()[1], objective="paper", settings=settings)
+    adam = hollow(_surface()[1], objective="paper", settings=settings, solver="adam")
     assert (adam.material == plane.material).mean() >= 0.998
 
 
@@ -149,7 +149,7 @@ def test_refusals():
         hollow(surface, solver="guess")
     with pytest.raises(UsageError, match="cpu"):
         hollow(surface, device="cuda")
-    with pytest.raises(UsageError, match="belong to the paper"):
+    with pytest.raises(UsageError, match="belong to an objective"):
         hollow(surface, solver="adam", solve=lambda domain: domain.shell.astype(float))
     with pytest.raises(UsageError, match="shape"):
         hollow(surface, solve=lambda domain: np.zeros(3))

@@ -81,10 +81,10 @@ def test_a_print_that_tips_is_warned_of_and_strictly_refused(gcode: Path, capsys
     gcode.write_text(tower(overhang=40.0))
     before = gcode.read_bytes()
     assert run(["hook", "--strict", str(gcode)]) == 1
-    assert "falls by itself" in capsys.readouterr().err
+    assert "falls over by itself" in capsys.readouterr().err
     assert gcode.read_bytes() == before
     assert run(["hook", str(gcode)]) == 0
-    assert "falls by itself" in capsys.readouterr().err
+    assert "falls over by itself" in capsys.readouterr().err
     assert notes_of(gcode)["stands"] == "no"
     assert notes_of(gcode)["findings"] == "printed-tilt"
 
@@ -227,9 +227,9 @@ real = Path.replace
 def after(self, target):
     real(self, target)
     die()
-if point == "created": rewriting.os.fdopen = die
+if point == "created": os.fdopen = die
 if point == "half": rewriting.shutil.copyfileobj = half
-if point == "synced": rewriting.os.fsync = die
+if point == "synced": os.fsync = die
 if point == "ready": Path.replace = die
 if point == "replaced": Path.replace = after
 if other.name == "none":
@@ -266,7 +266,7 @@ def test_a_failed_write_leaves_nothing_behind(
         raise OSError(28, "No space left on device")
 
     before = gcode.read_bytes()
-    monkeypatch.setattr("printprep.hook.gcode_file.os.fsync", full)
+    monkeypatch.setattr("os.fsync", full)
     for write in (
         lambda: annotate(gcode, ["a = 1"]),
         lambda: replace_content(gcode, gcode, ["a = 1"]),

@@ -25,8 +25,8 @@ def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("-p resin-standard", "prints without infill"),
         ("-p sls-pa12", "prints without infill"),
         ("-o out.stl", "cannot carry infill"),
-        ("--for orca", "in PrusaSlicer's words"),
-        ("--objective paper", "knows no sparse infill"),
+        ("--for orca", "for PrusaSlicer only"),
+        ("--objective paper", "has no sparse infill"),
         ("--self-support", "no cavity to support"),
         ("--drains 2 --drain-diameter 3", "no cavity to drain"),
         ("--simulate", "takes the mesh for solid"),
@@ -83,7 +83,7 @@ def test_without_a_slicer_it_is_an_estimate_and_says_so(
     assert said["tilt_deg"] == pytest.approx(14.5, abs=0.01)
     assert said["cavities"]["count"] == 0
     assert [item["rule"] for item in said["findings"]] == ["infill-estimated"]
-    other = said["other_way"]
+    other = said["alternative_fill"]
     assert other["fill"] == "cavity"
     assert (
         run([*line, "--fill", "cavity", "--no-self-support", "--resolution", "32", "--json"]) == 0
@@ -91,7 +91,7 @@ def test_without_a_slicer_it_is_an_estimate_and_says_so(
     hollow = json.loads(capsys.readouterr().out)
     assert other["mass_g"] == pytest.approx(hollow["mass_g"], rel=0.02)
     assert hollow["infill"] is None
-    assert hollow["other_way"] == {
+    assert hollow["alternative_fill"] == {
         "fill": "infill",
         "mass_g": pytest.approx(said["mass_g"], rel=0.02),
     }

@@ -12,19 +12,19 @@ from manifold3d import Manifold
 
 from printprep.density.program import Program
 from printprep.grid.depth import Depths
-from printprep.infill.ballast import settle_estimated, stability_of_choice
+from printprep.infill.ballast import estimated_ballast, stability_of_choice
 from printprep.infill.estimate import (
     GYROID_SHARE,
     LIGHTNING_BELOW_MM,
     LIGHTNING_MM,
     hanging,
     infill_program,
+    measured_depths,
     shell_mm,
     sparse_share,
 )
 from printprep.infill.moment_field import moment_field_of
 from printprep.output.prusa_keys import layers, lines, object_keys, walls_mm
-from printprep.pipeline.infill import measured_depths
 from printprep.profiles import Profile, load_profile
 from printprep.types import Lean
 
@@ -132,10 +132,10 @@ def test_the_lightest_ballast_stands_as_asked_and_lies_below_a_plane(pattern: st
     program, _ = program_for(pattern)
     lean = Lean(14.0)
     choice = program.choose("never", lean)
-    found = settle_estimated(solid_of(leaning()), program, choice, 0.15)
+    found = estimated_ballast(solid_of(leaning()), program, choice, 0.15)
     assert choice.reached == np.inf
     assert stability_of_choice(program, choice).tilt_deg == pytest.approx(14.0, abs=1e-3)
-    assert found.standing.tilt_deg == pytest.approx(14.0, abs=1e-3)
+    assert found.stability.tilt_deg == pytest.approx(14.0, abs=1e-3)
     assert found.moments[0] == pytest.approx(program.unfilled(None)[0, 0] + found.ballast_mm3)
     (ballast,) = found.ballast
     (plane,) = found.density.planes

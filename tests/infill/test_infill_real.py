@@ -19,9 +19,9 @@ from printprep import hollow
 from printprep.cli.run import run
 from printprep.errors import UsageError
 from printprep.profiles import load_profile
+from printprep.result import HollowResult
 from printprep.slicer.process import find_slicer
 from printprep.threemf.read import read_3mf
-from printprep.types import HollowResult
 from printprep.verify.run import Verified, verify
 
 # One worker makes the part for all of them

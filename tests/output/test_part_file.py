@@ -19,8 +19,9 @@ from judges import read_strictly
 
 from printprep.errors import OutputError, UsageError
 from printprep.mesh.quantize import quantized_arrays
+from printprep.output.limits import check_output, format_findings
 from printprep.output.manual_settings import check_slicer
-from printprep.output.part_file import check_output, format_findings, part_bytes, write_part
+from printprep.output.part_file import part_bytes, write_part
 from printprep.profiles import load_profile
 
 SUFFIXES = (".3mf", ".stl", ".obj", ".ply")
@@ -40,14 +41,14 @@ def test_volume_and_orientation_survive_the_file(tmp_path: Path, suffix: str):
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_the_same_result_gives_the_same_bytes(suffix: str):
-    assert part_bytes(hollow_result(), suffix) == part_bytes(
-        hollow_result(seconds={"read": 9.0}), suffix
+    assert part_bytes(hollow_result().contents(), suffix) == part_bytes(
+        hollow_result(seconds={"read": 9.0}).contents(), suffix
     )
 
 
 def test_the_3mf_holds_the_checked_triangles_settings_and_proof():
     result = hollow_result()
-    archive = zipfile.ZipFile(io.BytesIO(part_bytes(result, ".3mf")))
+    archive = zipfile.ZipFile(io.BytesIO(part_bytes(result.contents(), ".3mf")))
     config = archive.read("Metadata/Slic3r_PE_model.config").decode()
     for key, value in result.profile.slicer.object_settings.items():
         assert f'key="{key}" value="{value}"' in config
@@ -63,7 +64,7 @@ def test_the_3mf_holds_the_checked_triangles_settings_and_proof():
 
 
 def test_nothing_of_user_or_machine_is_in_the_3mf(tmp_path: Path):
-    archive = zipfile.ZipFile(io.BytesIO(part_bytes(hollow_result(), ".3mf")))
+    archive = zipfile.ZipFile(io.BytesIO(part_bytes(hollow_result().contents(), ".3mf")))
     everything = b"".join(archive.read(name) for name in archive.namelist())
     for secret in (str(tmp_path), str(Path.home()), os.environ.get("USER", "nobody-at-all")):
         if len(secret) > 3:
@@ -98,10 +99,10 @@ def test_lib3mf_reads_it_strictly_without_a_warning(tmp_path: Path):
 
 class TestOutput:
     def test_unknown_suffix_is_usage(self, tmp_path: Path):
-        with pytest.raises(UsageError, match=r"\.step is no format") as caught:
+        with pytest.raises(UsageError, match=r"\.step is not a format") as caught:
             check_output(tmp_path / "part.step")
         assert ".3mf" in caught.value.hint
-        with pytest.raises(UsageError, match="without suffix"):
+        with pytest.raises(UsageError, match="without a suffix"):
             check_output(tmp_path / "part")
 
     def test_missing_folder(self, tmp_path: Path):
@@ -122,21 +123,21 @@ class TestOutput:
             check_output(tmp_path / "part.3mf")
 
     def test_suffixes_in_capitals_are_taken(self, tmp_path: Path):
-        write_part(hollow_result(), tmp_path / "PART.STL")
+        write_part(hollow_result().contents(), tmp_path / "PART.STL")
         assert (tmp_path / "PART.STL").stat().st_size == 84 + 24 * 50
 
     def test_an_existing_file_is_replaced(self, tmp_path: Path):
         path = tmp_path / "part.stl"
         path.write_text("old")
-        write_part(hollow_result(), str(path))
-        assert path.read_bytes() == part_bytes(hollow_result(), ".stl")
+        write_part(hollow_result().contents(), str(path))
+        assert path.read_bytes() == part_bytes(hollow_result().contents(), ".stl")
 
 
 @pytest.mark.parametrize("slicer", ["orca", "cura", "generic"])
 def test_for_another_slicer_the_shape_is_alone_and_the_rest_is_said(slicer: str, tmp_path: Path):
     result = hollow_result()
-    prusa = zipfile.ZipFile(io.BytesIO(part_bytes(result, ".3mf")))
-    plain = zipfile.ZipFile(io.BytesIO(part_bytes(result, ".3mf", slicer)))
+    prusa = zipfile.ZipFile(io.BytesIO(part_bytes(result.contents(), ".3mf")))
+    plain = zipfile.ZipFile(io.BytesIO(part_bytes(result.contents(), ".3mf", slicer)))
     config = "Metadata/Slic3r_PE_model.config"
     assert set(prusa.namelist()) - set(plain.namelist()) == {config}
     for name in set(plain.namelist()) - {"[Content_Types].xml"}:
@@ -144,7 +145,7 @@ def test_for_another_slicer_the_shape_is_alone_and_the_rest_is_said(slicer: str,
     result.write(tmp_path / "part.3mf", slicer)
     mesh, warnings = read_strictly(tmp_path / "part.3mf")
     assert not warnings and len(mesh.vertices) == 16
-    assert part_bytes(result, ".stl", slicer) == part_bytes(result, ".stl")
+    assert part_bytes(result.contents(), ".stl", slicer) == part_bytes(result.contents(), ".stl")
     for name in ("part.3mf", "part.stl"):
         (finding,) = format_findings(result.profile, Path(name), slicer)
         assert (finding.rule, finding.severity) == ("set-by-hand", "info")

@@ -9,8 +9,10 @@ import pytest
 from closed_form_parts import context, hollow_box, hollow_result
 
 from printprep.check import run_rules
+from printprep.output.numbers import number, to_text
+from printprep.pipeline.check import Checked
 from printprep.profiles import load_profile
-from printprep.report.json import check_json, embedded_json, number, result_json, to_text
+from printprep.report.json import check_json, result_json
 from printprep.types import Finding, Repair, Solid
 
 KEYS = {
@@ -64,7 +66,7 @@ def test_findings_have_every_field():
 
 
 def test_the_embedded_form_holds_no_time_path_or_output():
-    data = embedded_json(hollow_result())
+    data = hollow_result().figures().to_json()
     assert not {"seconds", "output"} & set(data)
     assert data["model"] == "block"
     assert set(data) | {"seconds", "output", "simulation"} == set(result_json(hollow_result()))
@@ -103,7 +105,7 @@ def test_repair_is_told_in_full():
 def test_check_tells_size_mass_and_wall():
     profile = load_profile("fdm-pla-0.4")
     examined = context(hollow_box(20, 2))
-    data = check_json(examined, run_rules(examined, profile), profile, model="x.stl")
+    data = check_json(Checked(examined, run_rules(examined, profile), profile), model="x.stl")
     assert data["size_mm"] == [20.0, 20.0, 20.0]
     assert (data["volume_mm3"], data["mass_g"], data["wall_min_mm"]) == (3904.0, 4.84096, 2.0)
     assert data["cavities"]["count"] == 1

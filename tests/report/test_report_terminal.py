@@ -11,6 +11,7 @@ from closed_form_parts import box, context, hollow_box, hollow_result
 from rich.console import Console
 
 from printprep.check import run_rules
+from printprep.pipeline.check import Checked
 from printprep.profiles import load_profile
 from printprep.report.terminal import show_check, show_result
 from printprep.types import Finding, Repair, Stability
@@ -30,7 +31,7 @@ def test_it_names_what_changed_and_where_the_file_is():
     text = flat(summary(hollow_result()))
     for fact in (
         "9.92 g → 4.84 g (49 % of the solid)",
-        "45.0° → 45.0° (asked to stand 10°)",
+        "45.0° → 45.0° (should stand 10°)",
         "2.00 mm (profile 1.2 mm)",
         "cavities 1, 4.1 cm³",
         "no filling of its voxels below 4.9 g stands at 10.5° (gap 2e-10)",
@@ -122,7 +123,7 @@ def test_advice_is_for_fdm_and_for_a_3mf():
     ("part", "words"),
     [
         (hollow_box, ("size 20 × 20 × 20 mm", "thinnest wall 2.00 mm", "cavities 1")),
-        (lambda size, wall: box(size), ("cavities none", "Nothing to complain of")),
+        (lambda size, wall: box(size), ("cavities none", "No issues found")),
     ],
 )
 def test_check_summary(part, words):
@@ -131,9 +132,7 @@ def test_check_summary(part, words):
     stream = io.StringIO()
     show_check(
         Console(file=stream, width=80),
-        examined,
-        run_rules(examined, profile),
-        profile,
+        Checked(examined, run_rules(examined, profile), profile),
         verbose=False,
     )
     for word in words:

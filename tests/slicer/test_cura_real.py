@@ -13,7 +13,7 @@ from printprep import hollow
 from printprep.cli.run import run
 from printprep.gcode.measure import measure_gcode
 from printprep.gcode.printed import Printed
-from printprep.types import HollowResult
+from printprep.result import HollowResult
 
 pytestmark = pytest.mark.slicer
 

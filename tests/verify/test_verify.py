@@ -272,7 +272,7 @@ def rewritten(source: Path, target: Path, figures: bytes | None) -> Path:
 
 @pytest.mark.parametrize(
     ("figures", "words"),
-    [(None, "carries no"), (b"{", "no JSON"), (b"[]", "no figures"), (b"{}", "not those of")],
+    [(None, "carries no"), (b"{", "is not JSON"), (b"[]", '"format": 1'), (b"{}", '"format": 1')],
 )
 def test_files_that_are_not_ours(block: Path, tmp_path: Path, figures: bytes | None, words: str):
     with pytest.raises(InputError, match=words) as caught:
@@ -282,9 +282,9 @@ def test_files_that_are_not_ours(block: Path, tmp_path: Path, figures: bytes | N
 
 
 def test_a_model_is_no_part(tmp_path: Path):
-    with pytest.raises(InputError, match="no 3MF"):
+    with pytest.raises(InputError, match="is not a 3MF"):
         computed_part(write_model(tmp_path))
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="does not exist"):
         computed_part(tmp_path / "none.3mf")
 
 

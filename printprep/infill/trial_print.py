@@ -1,0 +1,88 @@
+"""A print to be weighed: the part goes through the real slicer, and its G-code is measured."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from printprep.output.item import infill_item
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from printprep.arrays import Float
+    from printprep.profiles import Profile
+    from printprep.slicer.process import Slicer
+    from printprep.types import Part, Stability
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """What a print deposits, and how it stands, by what of it stands apart.
+
+    moments : (k, 4) mm³ and mm⁴, in the part's coordinates;  standings : one each.
+    """
+
+    moments: Float
+    stabilities: tuple[Stability, ...]
+
+
+class TrialSlicer:
+    """Slices parts with one profile, the same file once only."""
+
+    def __init__(self, slicer: Slicer, profile: Profile) -> None:
+        self.slicer = slicer
+        self.profile = profile
+        self._known: dict[bytes, Weighed] = {}
+
+    @property
+    def slices(self) -> int:
+        """How often the slicer was asked."""
+        return len(self._known)
+
+    def weigh(self, part: Part, ballast: Sequence[Manifold], apart: Sequence[Manifold]) -> Weighed:
+        """Slice a part and measure it.
+
+        apart : what of it does not touch, a solid each; beads of a base go to the nearest.
+
+        Raises ToolError where the slicer refuses it, InputError where it has no first layer.
+        """
+        from printprep.threemf.write import write_3mf
+
+        item = infill_item(part.manifold, ballast, part.name, self.profile)
+        content = write_3mf([item])
+        if content not in self._known:
+            at_mm = np.array(item.translation_mm)
+            self._known[content] = self._measured(content, at_mm, apart)
+        return self._known[content]
+
+    def _measured(self, content: bytes, at_mm: Float, apart: Sequence[Manifold]) -> Weighed:
+        from printprep.gcode.measure import measure_gcode
+        from printprep.gcode.stability import stability_of_print
+        from printprep.slicer.prusa_ini import profile_settings
+
+        with tempfile.TemporaryDirectory(prefix="printprep-") as name:
+            file, gcode = Path(name) / "part.3mf", Path(name) / "part.gcode"
+            file.write_bytes(content)
+            self.slicer.slice(file, gcode, profile_settings(self.profile))
+            bodies = [solid.translate(at_mm.tolist()) for solid in apart]
+            printed = measure_gcode(gcode, bodies=bodies)
+        mm3 = printed.volume_mm3 / printed.mass_g
+        moments, stabilities = [], []
+        for body in printed.bodies or (printed,):
+            found = stability_of_print(body)
+            centre = np.array(found.centre_of_mass_mm) - at_mm
+            moments.append(body.mass_g * mm3 * np.array([1.0, *centre]))
+            x, y, z = centre.tolist()
+            polygon = found.support_polygon_mm - at_mm[:2]
+            stabilities.append(
+                replace(
+                    found, support_polygon_mm=polygon, centre_of_mass_mm=(x, y, z + float(at_mm[2]))
+                )
+            )
+        return Weighed(np.stack(moments), tuple(stabilities))

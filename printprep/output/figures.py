@@ -1,0 +1,170 @@
+"""The figures of a part, as its file carries them and ``verify`` and the hook read them back.
+
+One frozen class is both sides: ``figures.to_json()`` is written into the 3MF, and
+``Figures.from_json`` reads it again and refuses what it does not know.  Nothing in it depends on
+time, path, user or machine, so that the same input gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from printprep.output.numbers import plain
+from printprep.types import Advice, AlternativeFill, Certificate, Drain, Finding, Repair
+
+FORMAT = 1
+"""Version of the keys.  A reader refuses another; a key that changes its meaning raises it."""
+
+Place = tuple[float, float, float]
+Row = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class ContactFigures:
+    """The first layer's section: corners (x, y) of its hull, counter-clockwise, and its area."""
+
+    polygon_mm: tuple[tuple[float, float], ...]
+    area_mm2: float
+
+
+@dataclass(frozen=True)
+class Cavity:
+    """One sealed or drained cavity; bounds_mm : low and high corner."""
+
+    volume_mm3: float
+    bounds_mm: tuple[Place, Place]
+
+
+@dataclass(frozen=True)
+class Cavities:
+    """All cavities, in the part's order."""
+
+    count: int
+    items: tuple[Cavity, ...]
+
+
+@dataclass(frozen=True)
+class Vaults:
+    """What carries ceilings from inside, over all the hollowable volume."""
+
+    capitals: int
+    columns: int
+    added_mm3: float
+    added_g: float
+    unsupported_mm2: float
+    islands: int
+
+
+@dataclass(frozen=True)
+class Drains:
+    """Holes, what of floors was filled, and the volumes of cavities that no hole opens."""
+
+    count: int
+    items: tuple[Drain, ...]
+    filled_mm3: float
+    closed_mm3: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SparseInfill:
+    """The slicer's infill; weighed_with : the slicer whose G-code was weighed, None: estimated."""
+
+    pattern: str
+    density: float
+    perimeters: int
+    solid_layers: int
+    ballast_g: float
+    weighed_with: str | None
+    slices: int
+
+
+@dataclass(frozen=True)
+class BaseFigures:
+    """How far feet are seated, the footprint grown, and what the base adds to the model."""
+
+    seat_mm: float
+    growth_mm: float
+    mass_g: float
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What was computed of a part; lengths in mm, masses in g, angles in degrees.
+
+    printprep : version;  settings : the profile's keys;  placement : (4, 4), file → part.
+    mass_ratio : of the solid;  bounds_mm : low and high corner;  contact : None without any;
+    bodies : how many do not touch each other;  tilt_deg : None without contact.
+    """
+
+    printprep: str
+    model: str
+    profile: str
+    settings: dict[str, Any]
+    placement: tuple[Row, Row, Row, Row]
+    solid_mass_g: float
+    mass_g: float
+    mass_ratio: float
+    bounds_mm: tuple[Place, Place]
+    centre_of_mass_mm: Place
+    contact: ContactFigures | None
+    bodies: int
+    tilt_solid_deg: float | None
+    tilt_deg: float | None
+    lean_deg: float
+    lean_azimuth_deg: float | None
+    aim_deg: float | None
+    reachable_deg: float | None
+    advice: Advice | None
+    supports: Vaults | None
+    drains: Drains | None
+    infill: SparseInfill | None
+    alternative_fill: AlternativeFill | None
+    wall_min_mm: float | None
+    cavities: Cavities
+    base: BaseFigures | None
+    certificate: Certificate | None
+    findings: tuple[Finding, ...]
+    repair: Repair
+    format: Annotated[int, Field(ge=FORMAT, le=FORMAT)] = FORMAT
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain values, the version of the keys first."""
+        values = plain(self)
+        return {"format": values.pop("format"), **values}
+
+    @classmethod
+    def from_json(cls, text: bytes | str) -> Figures:
+        """Read what ``to_json`` wrote.
+
+        Raises ValueError, in one line, for text that is no such JSON, lacks a key, is of another
+        version, or holds a number that is not finite.
+        """
+        try:
+            data = json.loads(text, parse_constant=_finite, parse_float=_finite)
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"it is not JSON ({error})") from error
+        if not isinstance(data, Mapping) or data.get("format") != FORMAT:
+            raise ValueError(f'it does not carry "format": {FORMAT}')
+        try:
+            figures: Figures = _READER.validate_python(data)
+            return figures
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(str(part) for part in first["loc"])
+            raise ValueError(f"{key}: {first['msg']}") from error
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:20]} is not a finite number")
+    return value
+
+
+_READER = TypeAdapter(Figures)

@@ -1,0 +1,1 @@
+"""The way through the house: prepare, fill, advise, check; one job, from file to file."""

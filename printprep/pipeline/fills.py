@@ -1,0 +1,139 @@
+"""What may fill a part: one door for every fill.
+
+To add one, put a row into ``FILLS``; command line, Python interface and batch find it there.  The
+rows import what they need when they run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from printprep.errors import UsageError
+
+if TYPE_CHECKING:
+    from printprep.grid.depth import Depths
+    from printprep.pipeline.filled import Filled
+    from printprep.pipeline.options import FillOptions
+    from printprep.pipeline.prepare import Prepared
+    from printprep.profiles import Profile
+    from printprep.progress import Stopwatch
+    from printprep.types import Base, Lean, SlicerName, Solid
+
+
+@dataclass(frozen=True)
+class Fill:
+    """One way to fill a part.
+
+    summary : one line for --help;  solid : it prints as its mesh says, so a simulation of the mesh
+        is one of the print.
+    check : raises UsageError where profile or options do not go with it, before the long work.
+    check_output : raises UsageError for a suffix or a slicer whose file cannot carry it.
+    run : decides the inside.
+    estimate_mm3 : material it would take, without a slicer; None where the profile does not allow
+        it.
+    """
+
+    name: str
+    summary: str
+    solid: bool
+    check: Callable[[Profile, FillOptions], None]
+    check_output: Callable[[str, SlicerName], None]
+    run: Callable[[Prepared, FillOptions, Lean, Stopwatch], Filled]
+    estimate_mm3: Callable[[Solid, Depths, Profile, Base | None, Lean], float | None]
+
+
+def _check_cavity(profile: Profile, options: FillOptions) -> None:
+    from printprep.supports.policy import supports_wanted
+
+    supports_wanted(options.self_support, profile)
+    if options.slicer is not None:
+        raise UsageError(
+            "--slicer goes with --fill infill: the slicer weighs a print with infill.",
+            "Add --fill infill, or leave out --slicer.",
+        )
+
+
+def _any_output(suffix: str, slicer: SlicerName) -> None:
+    del suffix, slicer
+
+
+def _run_cavity(prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch) -> Filled:
+    from printprep.pipeline.cavity import fill_with_cavity
+
+    return fill_with_cavity(prepared, options, lean, clock)
+
+
+def _estimate_cavity(
+    solid: Solid, depths: Depths, profile: Profile, base: Base | None, lean: Lean
+) -> float | None:
+    from printprep.density.program import Program
+    from printprep.infill.moment_field import moment_field_of
+
+    interior = moment_field_of(depths, profile.wall_mm).interior(solid, depths)
+    program = Program(solid.manifold, interior, profile)
+    return program.solve(base, lean, profile.stability.lean_margin_deg).volume_mm3
+
+
+def _check_infill(profile: Profile, options: FillOptions) -> None:
+    from printprep.infill.options import check_infill
+
+    check_infill(profile, objective=options.objective, self_support=options.self_support is True)
+
+
+def _only_3mf(suffix: str, slicer: SlicerName) -> None:
+    from printprep.output.limits import check_infill_output
+
+    check_infill_output(suffix, slicer)
+
+
+def _run_infill(prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch) -> Filled:
+    from printprep.pipeline.infill import fill_with_infill
+
+    return fill_with_infill(prepared, options, lean, clock)
+
+
+def _estimate_infill(
+    solid: Solid, depths: Depths, profile: Profile, base: Base | None, lean: Lean
+) -> float | None:
+    from printprep.infill.estimate import infill_program
+
+    if profile.infill is None:
+        return None
+    program = infill_program(solid, depths, profile)
+    return program.solve(base, lean, profile.stability.lean_margin_deg).volume_mm3
+
+
+FILLS: dict[str, Fill] = {
+    row.name: row
+    for row in (
+        Fill(
+            name="cavity",
+            summary="hollow",
+            solid=True,
+            check=_check_cavity,
+            check_output=_any_output,
+            run=_run_cavity,
+            estimate_mm3=_estimate_cavity,
+        ),
+        Fill(
+            name="infill",
+            summary="the slicer's sparse infill, with dense ballast where weight is needed "
+            "(filament and 3MF only)",
+            solid=False,
+            check=_check_infill,
+            check_output=_only_3mf,
+            run=_run_infill,
+            estimate_mm3=_estimate_infill,
+        ),
+    )
+}
+
+
+def fill_of(name: str) -> Fill:
+    """The fill of that name.  Raises UsageError, with the names there are."""
+    found = FILLS.get(name)
+    if found is None:
+        raise UsageError(f"There is no fill {name}.", f"The fills are {', '.join(FILLS)}.")
+    return found

@@ -1,0 +1,79 @@
+"""What a run is asked for, as frozen values: a command, a batch or a service can pass them on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from printprep.errors import UsageError
+from printprep.objectives import DEFAULT_OBJECTIVE, Solver
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from printprep.density.program import BasePolicy
+    from printprep.types import Lean
+
+FINEST, COARSEST = 512, 8  # voxels along the longest side
+
+
+@dataclass(frozen=True)
+class Placement:
+    """How a model lies on the bed.
+
+    units : of the file, mm, cm, m or in; None takes what the file says, else mm.
+    up : the file's axis that points up.
+    scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
+    pose : K lays the model, as placed so far, into its K-th steadiest stable pose.
+    """
+
+    units: str | None = None
+    up: str = "+z"
+    scale: float | None = None
+    height_mm: float | None = None
+    size_mm: float | None = None
+    pose: int | None = None
+
+
+AS_IN_FILE = Placement()
+
+
+@dataclass(frozen=True)
+class FillOptions:
+    """How the inside is decided.
+
+    fill : a name in :data:`printprep.pipeline.fills.FILLS`.
+    lean : degrees the part must stand, "15@90" for 15° toward the azimuth of 90°, None for the
+        profile's.
+    resolution : voxels along the longest side.
+    objective : a name in :data:`printprep.objectives.OBJECTIVES`, with its solver.
+    base : whether material may be added around the feet.
+    self_support : whether vaults carry ceilings; None: where the process lets them sag.
+    slicer : the PrusaSlicer that weighs infill prints; None takes one that is found, and without
+        one the print is estimated.
+    """
+
+    fill: str = "cavity"
+    lean: float | str | Lean | None = None
+    resolution: int = 64
+    objective: str = DEFAULT_OBJECTIVE
+    solver: Solver = field(default_factory=Solver)
+    base: BasePolicy = "auto"
+    self_support: bool | None = None
+    slicer: Path | None = None
+
+
+def drain_keys(count: int | None, diameter_mm: float | None) -> Mapping[str, object]:
+    """The profile keys that change the drains; None leaves the profile's."""
+    keys = {"drain.count": count, "drain.diameter_mm": diameter_mm}
+    return {key: value for key, value in keys.items() if value is not None}
+
+
+def check_resolution(resolution: int) -> None:
+    """Raise UsageError for a resolution that is too coarse or too fine."""
+    if not COARSEST <= resolution <= FINEST:
+        raise UsageError(
+            f"A resolution of {resolution} is not between {COARSEST} and {FINEST} voxels.",
+            "The default is 64; walls are exact at any.",
+        )

@@ -1,0 +1,94 @@
+"""The first steps of every run: read, place, repair, pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from printprep.errors import UsageError
+from printprep.pipeline.options import AS_IN_FILE, Placement
+from printprep.progress import Progress
+
+if TYPE_CHECKING:
+    import trimesh
+
+    from printprep.profiles import Profile
+    from printprep.types import Model, Solid
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A model that is ready: its triangles as they came, placed, and the solid they make."""
+
+    model: Model
+    solid: Solid
+    profile: Profile
+
+
+def prepare(
+    model: str | Path | trimesh.Trimesh,
+    profile: Profile,
+    placement: Placement,
+    progress: Progress,
+) -> Prepared:
+    """Read a model (a mesh file, a voxel file or a mesh), place it, and make a solid of it.
+
+    Raises
+    ------
+    UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
+    """
+    from printprep.mesh.repair import repair
+
+    with progress.stage("read"):
+        placed = placed_model(model, placement)
+    with progress.stage("repair"):
+        solid = repair(placed)
+        if placement.pose is not None:
+            placed, solid = _posed(placed, solid, placement.pose)
+    return Prepared(placed, solid, profile)
+
+
+def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_IN_FILE) -> Model:
+    """A file or mesh as triangles on the bed, not yet posed.
+
+    Raises UsageError for a placement that has no meaning, InputError for an unreadable file.
+    """
+    from printprep.generators.model import read_model
+    from printprep.generators.read import SUFFIXES as VOXEL_SUFFIXES
+    from printprep.mesh.place import place
+    from printprep.mesh.read import from_trimesh, read_mesh
+
+    if isinstance(model, str | Path):
+        path = Path(model)
+        voxels = path.suffix.lower() in VOXEL_SUFFIXES
+        raw = read_model(path) if voxels else read_mesh(path, placement.units)
+    else:
+        raw = from_trimesh(model, units=placement.units)
+    return place(
+        raw,
+        up=placement.up,
+        scale=placement.scale,
+        height_mm=placement.height_mm,
+        size_mm=placement.size_mm,
+    )
+
+
+def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
+    """Model and solid in the stable pose of this number, the steadiest being 1."""
+    from printprep.stand.poses import in_pose, stable_poses
+
+    poses = stable_poses(solid.manifold)
+    if not 1 <= number <= len(poses):
+        known = ", ".join(f"{k} ({p.tilt_deg:.0f}°)" for k, p in enumerate(poses, start=1))
+        raise UsageError(
+            f"{solid.name} has no stable pose {number}.",
+            f"It has these, with the lean each stands: {known}." if poses else None,
+        )
+    manifold, move = in_pose(solid.manifold, poses[number - 1])
+    placement = move @ solid.placement
+    vertices = placed.vertices @ move[:3, :3].T + move[:3, 3]
+    return (
+        replace(placed, vertices=vertices, placement=placement),
+        replace(solid, manifold=manifold, placement=placement),
+    )

@@ -1,0 +1,1 @@
+"""Pictures without a screen: rasterizer, shading, thumbnail, moving pictures of a simulation."""

@@ -1,0 +1,1 @@
+"""A part against the print of it: sliced, measured in its G-code, compared."""
