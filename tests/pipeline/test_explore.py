@@ -14,6 +14,7 @@ from printprep.cli import main
 from printprep.mesh.measure import arrays
 from printprep.pipeline.explore import Exploration, explore
 from printprep.pipeline.hollow import hollow
+from printprep.pipeline.options import FillOptions
 from printprep.report.chart import chart
 
 # One worker explores the prism for all of them
@@ -29,7 +30,7 @@ def prism(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(prism: Path) -> Exploration:
-    return explore(prism, base="never", resolution=32, count=6)
+    return explore(prism, options=FillOptions(base="never", resolution=32), count=6)
 
 
 def test_more_lean_never_weighs_less(found: Exploration) -> None:
