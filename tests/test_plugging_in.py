@@ -52,8 +52,8 @@ def test_a_sealed_cavity_is_told_in_the_process_own_words(monkeypatch):
     (found,) = [
         f for f in run_rules(context(hollow_box(30, 2)), settings) if f.rule == "sealed-cavity"
     ]
-    assert "of wax" in found["sealed-cavity"].message
-    assert found["sealed-cavity"].severity == "error"
+    assert "of wax" in found.message
+    assert found.severity == "error"
 
 
 def test_an_unknown_process_is_refused_with_those_there_are():

@@ -52,7 +52,7 @@ def test_a_lean_asked_for_and_not_reached_fails(folder, capsys):
     assert run(["simulate", path, "--lean", "20", "--fail-on", "none", "-q"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert captured.err.startswith("printprep: error: In simulation its foot leaves the bed at")
+    assert captured.err.startswith("printprep: error: In simulation the part tips at")
     assert run(["simulate", path, "--height", "20", "--up", "x", "--lean", "40"]) == 0
 
 
