@@ -59,9 +59,7 @@ _KINDS = (
     Kind("nothing-to-hollow", None, _INFO, "a part left solid for no visible reason"),
     Kind("sealed-cavity", "mm3", ("info", "error"), "resin or powder that can never get out"),
     Kind("suction-cup", "mm2", _WARNING, "layers that a vacuum tears as they leave the film"),
-    Kind(
-        "trapped-volume", "mm3", ("info", "warning"), "resin that leaks, or cures inside"
-    ),
+    Kind("trapped-volume", "mm3", ("info", "warning"), "resin that leaks, or cures inside"),
     # standing
     Kind("contact-area", "mm2", _WARNING, "a tall print that comes loose from the bed"),
     Kind("lean-out-of-reach", "deg", _ERROR, "more ballast where only feet or pose help"),

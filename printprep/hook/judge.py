@@ -84,6 +84,33 @@ def judge(gcode: Path, *, lean: Lean, part: Path | None = None) -> JudgedPrint:
     return JudgedPrint(printed, lean, carried, sorted_findings(findings))
 
 
+def judge_and_annotate(
+    gcode: Path,
+    *,
+    profile: str,
+    lean: str | None = None,
+    part: Path | None = None,
+    strict: bool = False,
+) -> JudgedPrint:
+    """Judge a G-code and write the figures at its end.
+
+    profile, lean : the lean at which the print should stand; None takes the profile's.
+    strict : leave the G-code unchanged if a finding is an error.
+
+    Raises InputError if the G-code or the part cannot be read, UsageError for the profile or the
+    lean, OutputError if the G-code cannot be rewritten.
+    """
+    from printprep.hook.gcode_file import annotate
+    from printprep.profiles import load_profile
+    from printprep.stand.lean import lean_of
+
+    requested = lean_of(lean, load_profile(profile).stability.lean_deg)
+    judged = judge(gcode, lean=requested, part=part)
+    if not (strict and any(item.severity == "error" for item in judged.findings)):
+        annotate(gcode, notes(judged))
+    return judged
+
+
 def measured(gcode: Path, part: ComputedPart | None = None) -> Printed:
     """A G-code's figures; what it does not say of the filament, the slicer's environment may."""
     from printprep.gcode.measure import measure_gcode

@@ -62,3 +62,31 @@ def simulate(
         simulation = trial(solid.manifold, first_layer_mm, asked)
     findings = sorted_findings(simulation_findings(simulation, asked))
     return Simulated(solid, stands, simulation, asked, settings, findings)
+
+
+def draw_fall(
+    simulated: Simulated,
+    *,
+    gif: Path | None = None,
+    strip: Path | None = None,
+    progress: Progress = SILENT,
+) -> None:
+    """Draw the bed tilting toward the weakest edge: a GIF, a strip of PNG stills, or both.
+
+    Raises OutputError if a file cannot be written.
+    """
+    if gif is None and strip is None:
+        return
+    from printprep.files import write_atomically
+    from printprep.render import animation
+    from printprep.stand.fall import film
+
+    part = simulated.solid.manifold
+    first_layer_mm = simulated.profile.printer.first_layer_mm
+    with progress.stage("draw"):
+        if gif is not None:
+            moving = film(part, first_layer_mm, animation.GIF_FRAMES_PER_S)
+            write_atomically(gif, animation.gif_bytes(moving))
+        if strip is not None:
+            stills = film(part, first_layer_mm, animation.STRIP_FRAMES_PER_S)
+            write_atomically(strip, animation.strip_bytes(stills))

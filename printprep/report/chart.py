@@ -10,6 +10,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from printprep.pipeline.explore import Exploration
 
 WIDTH, HEIGHT = 720, 440
@@ -64,6 +66,17 @@ class Drawing:
         out = io.BytesIO()
         image.save(out, "PNG", optimize=False)
         return out.getvalue()
+
+
+def write_chart(found: Exploration, path: Path) -> None:
+    """Write the chart as SVG, or as PNG for any other suffix than .svg.
+
+    Raises OutputError if the file cannot be written.
+    """
+    from printprep.files import write_atomically
+
+    drawing = chart(found)
+    write_atomically(path, drawing.svg() if path.suffix.lower() == ".svg" else drawing.png())
 
 
 def chart(found: Exploration) -> Drawing:

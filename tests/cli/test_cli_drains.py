@@ -56,8 +56,8 @@ def test_options_change_the_profile(handed, options, keys):
     ("options", "said"),
     [
         ("--drains 2 --no-drains", "exclude each other"),
-        ("--drain-diameter 3 --no-drains", "no drain to give a diameter to"),
-        ("--drains 0 --drain-diameter 3", "no drain to give a diameter to"),
+        ("--drain-diameter 3 --no-drains", "--drain-diameter has no effect without drain holes"),
+        ("--drains 0 --drain-diameter 3", "--drain-diameter has no effect without drain holes"),
         ("--no-drains --plugs p.3mf", "nothing to plug"),
         ("--plugs p.stl", "plugs are written as .3mf"),
         ("--plugs m-hollow.3mf", "is the part itself"),
