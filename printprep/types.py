@@ -110,7 +110,7 @@ class Lean:
     def __str__(self) -> str:
         if self.azimuth_deg is None:
             return f"{self.angle_deg:g}°"
-        return f"{self.angle_deg:g}° toward {self.azimuth_deg:g}°"
+        return f"{self.angle_deg:g}° toward azimuth {self.azimuth_deg:g}°"
 
 
 @dataclass(frozen=True, eq=False)

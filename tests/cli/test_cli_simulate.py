@@ -48,7 +48,7 @@ def test_a_lean_asked_for_and_not_reached_fails(folder, capsys):
     assert run(["simulate", path, "--lean", "20"]) == 1
     out = capsys.readouterr().out
     assert "simulated-tip" in out
-    assert "should stand 20°" in out
+    assert "should stand at 20°" in out
     assert run(["simulate", path, "--lean", "20", "--fail-on", "none", "-q"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""

@@ -14,6 +14,7 @@ from printprep.cli import main
 from printprep.mesh.measure import arrays
 from printprep.pipeline.explore import Exploration, explore
 from printprep.pipeline.hollow import hollow
+from printprep.pipeline.options import FillOptions
 from printprep.report.chart import chart
 
 
@@ -26,7 +27,7 @@ def prism(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(prism: Path) -> Exploration:
-    return explore(prism, base="never", resolution=32, count=6)
+    return explore(prism, options=FillOptions(base="never", resolution=32), count=6)
 
 
 def test_more_lean_never_weighs_less(found: Exploration) -> None:
@@ -87,4 +88,4 @@ def test_a_chart_of_another_kind_is_refused_before_the_work(
     with pytest.raises(SystemExit) as ended:
         main(["explore", str(prism), "--chart", str(tmp_path / "curve.gif")])
     assert ended.value.code == 2
-    assert "neither .svg nor .png" in capsys.readouterr().err
+    assert "--chart writes only .svg or .png" in capsys.readouterr().err
