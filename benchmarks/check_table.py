@@ -1,4 +1,4 @@
-"""Try every rule on every closed-form case and write what was missed and what was a false alarm.
+"""Try every rule on every closed-form case, and table misses and false alarms.
 
     python benchmarks/check_table.py -o docs/checks.md
 
@@ -23,32 +23,32 @@ from printprep.types import Finding
 _INTRO = """\
 # What is checked, and how far the checks can be trusted
 
-`printprep check FILE` runs every rule on any mesh or 3MF, whoever made it; `printprep hollow` runs
-the same rules on what it writes. A finding has a rule, a severity, a sentence for the one who
-prints, a way out for the one who changes the model, and where they make sense a value, its limit,
-a unit, a place in mm, an area and a volume (`--json`). `--fail-on warning|error` makes the exit
-code 1.
+`printprep check FILE` runs every rule on any mesh or 3MF, from any program; `printprep hollow` runs
+the same rules on the part it writes. A finding has a rule, a severity, a message, a fix, and where
+they make sense a value, its limit, a unit, a place in mm, an area and a volume (`--json`). With
+`--fail-on warning|error` a finding of that severity makes the exit code 1.
 
 ## How it is measured
 
-- **Thickness.** At a point every square millimetre, the largest ball that touches the surface there
-  and that no facing side cuts into; a side faces where it is within 30° of parallel. Edges, corners
-  and facets are therefore not thin; a wedge is where it is sharper than 30°. Thin both ways across
-  is a pin, thin one way a wall; a tenth is allowed for facets, and what lies flat on the bed does
-  not count. Around sealed cavities the wall is the exact distance of the two surfaces. Against a
-  plate, a shell of a sphere, a wedge and a cone the map is within 2 % or 0.02 mm everywhere
-  (tests/thickness).
-- **Gaps.** The same in the empty space outside, where two sides stay apart; a crease is none.
-- **What runs out.** A ball as wide as the profile's drain is followed on a grid of a sixth of its
-  width, with the clearance measured on the triangles themselves where it decides: a hole of the
-  ball's own width lets it through, one 0.1 mm narrower does not. What it cannot leave at all is
-  sealed, or has too small a way out, whose width is measured. What it can leave only by rising, as
-  the part stands, is a pool: a warning inside a space twice as wide as its ways out, information in
-  the open, as in a mug. Pockets smaller than the ball are left out.
-- **Suction cups.** An empty region of a layer with no way to the outside through the layers up to
-  it; the plate shuts what opens to it. Layers are a two-hundredth of the longest side.
+- **Thickness** at a point is the diameter of the largest ball that touches the surface there and
+  that no facing side cuts into; a side faces where it is within 30° of parallel. Every square
+  millimetre has such a point. So edges, corners and facets are not thin; a wedge sharper than 30°
+  is. A pin is thin in both directions across, a wall in one. Facets get an allowance of a tenth,
+  and surfaces flat on the bed do not count. Around sealed cavities the wall is the exact distance
+  of the two surfaces. Against a plate, a shell of a sphere, a wedge and a cone the map is within
+  2 % or 0.02 mm everywhere (tests/thickness).
+- **Gaps** are measured in the same way in the empty space outside, where two sides stay apart; a
+  crease is not a gap.
+- **Drainage.** The test follows a ball as wide as the profile's drain on a grid of a sixth of its
+  width, and measures the clearance on the triangles themselves where it decides: a hole of the
+  ball's own width lets it through, one 0.1 mm narrower does not. A space that the ball cannot leave
+  is sealed, or its way out is too narrow, and its width is measured. A space that the ball leaves
+  only by rising, as the part stands, is a pool: a warning inside a space twice as wide as its ways
+  out, information in the open, as in a mug. Pockets smaller than the ball do not count.
+- **Suction cups** are empty regions of a layer with no way to the outside through the layers up to
+  it; the plate closes what opens to it. Layers are a two-hundredth of the longest side.
 - **Unsupported ceilings** follow the slicer's own acceptance rule, layer by layer.
-- **The file's own triangles** are looked at before anything is repaired.
+- **The file's own triangles** are checked before any repair.
 """
 
 
@@ -72,19 +72,19 @@ def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
     counts: dict[str, Counter[str]] = {rule: Counter() for rule in RULES}
     for case, items in found:
         wanted = {rule for rule, _ in case.wanted}
-        said = {item.rule for item in items}
+        reported = {item.rule for item in items}
         for rule, count in counts.items():
             count[
-                ("found" if rule in said else "missed")
+                ("found" if rule in reported else "missed")
                 if rule in wanted
-                else ("false" if rule in said else "silent")
+                else ("false" if rule in reported else "silent")
             ] += 1
     lines = [
         "## Every rule on every case",
         "",
         f"{len(found)} solids in closed form, most of them just on one side of a limit "
         "(tests/check/check_cases.py; this page is written by benchmarks/check_table.py). "
-        "Rules without a failing case are about what `hollow` did.",
+        "Rules without a failing case report what `hollow` did.",
         "",
         "| rule | what for | found | missed | false alarms | rightly silent |",
         "|---|---|---|---|---|---|",
@@ -100,14 +100,14 @@ def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
 
 
 def _cases(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
-    lines = ["## The cases", "", "| solid | process | what was said |", "|---|---|---|"]
+    lines = ["## The cases", "", "| solid | process | findings |", "|---|---|---|"]
     for case, items in found:
-        said = "; ".join(_said(item) for item in items) or "nothing"
-        lines.append(f"| {case.name} | {case.process} | {said} |")
+        text = "; ".join(_finding_text(item) for item in items) or "nothing"
+        lines.append(f"| {case.name} | {case.process} | {text} |")
     return lines
 
 
-def _said(item: Finding) -> str:
+def _finding_text(item: Finding) -> str:
     text = f"{item.severity} `{item.rule}`"
     if item.value is not None:
         text += f" {item.value:.4g}"

@@ -1,15 +1,13 @@
-"""Hollow every model of a catalogue, judge what was written, and make a table of it.
+"""Hollow every model of a catalogue, judge the written parts, and table them.
 
     python benchmarks/dev_table.py ../shared/models/catalogue.csv -o table.md [--size 100] [--json]
 
-Each model goes through the installed command; its 3MF is then judged by lib3mf in strict mode, by
-prusa-slicer (--info, and a whole slice, whose G-code is measured) and by libigl, none of which is
-printprep.
+Each model goes through the installed command.  Then lib3mf in strict mode, prusa-slicer (--info,
+and a whole slice, whose G-code is measured) and libigl judge its 3MF: none of them is printprep.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
@@ -24,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 import igl
 import judges
 import verify_table
-from rows import catalogue, markdown_lines
+from rows import Row, markdown_lines, measured_rows, table_parser
 
 from printprep.mesh.place import place
 from printprep.mesh.read import read_mesh
@@ -55,37 +53,28 @@ COLUMNS = (
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("catalogue", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
-    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
-    parser.add_argument("--profile", default="fdm-pla-0.4")
-    parser.add_argument("--only", nargs="*", help="file stems, all without")
+    parser = table_parser(__doc__)
     parser.add_argument("--no-slice", action="store_true")
     parser.add_argument("--no-self-support", action="store_true", help="no vaults inside")
-    parser.add_argument("--json", type=Path, help="the rows as JSON too")
-    arguments = parser.parse_args()
-    rows = []
-    for model, up in catalogue(arguments.catalogue, arguments.only):
-        row = measure(
+    chosen = parser.parse_args()
+
+    def one(model: Path, up: str, _: Row) -> Row:
+        return measure(
             model,
             up,
-            arguments.size,
-            arguments.profile,
-            slice_it=not arguments.no_slice,
-            vaults=not arguments.no_self_support,
+            chosen.size,
+            chosen.profile,
+            slice_it=not chosen.no_slice,
+            vaults=not chosen.no_self_support,
         )
-        rows.append(row)
-        sys.stderr.write(json.dumps(row) + "\n")
-    arguments.output.write_text(markdown(rows), encoding="utf-8")
-    if arguments.json:
-        arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-    return 0 if all(row["exit"] == 0 for row in rows) else 1
+
+    rows = measured_rows(chosen, one, markdown)
+    return 0 if all("error" not in row for row in rows) else 1
 
 
 def measure(
     model: Path, up: str, size_mm: float, profile: str, *, slice_it: bool, vaults: bool = True
-) -> dict[str, Any]:
+) -> Row:
     """One row of the table."""
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
@@ -93,33 +82,33 @@ def measure(
         command += ["--up", up, "--size", str(size_mm), "--profile", profile, "--json"]
         command += [] if vaults else ["--no-self-support"]
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
-        row: dict[str, Any] = {"model": model.stem, "exit": ran.returncode, "stderr": ran.stderr}
+        row: Row = {"model": model.stem, "exit": ran.returncode, "stderr": ran.stderr}
         if ran.returncode != 0:
             return {**row, "error": ran.stdout}
-        said = json.loads(ran.stdout)
-        row |= {key: said[key] for key in ("solid_mass_g", "mass_g", "mass_ratio", "tilt_deg")}
-        row |= {key: said[key] for key in ("tilt_solid_deg", "reachable_deg", "wall_min_mm")}
-        row["repair"] = said["repair"]["rung"]
-        row["cavities"] = said["cavities"]["count"]
-        held = said["supports"]
+        told = json.loads(ran.stdout)
+        row |= {key: told[key] for key in ("solid_mass_g", "mass_g", "mass_ratio", "tilt_deg")}
+        row |= {key: told[key] for key in ("tilt_solid_deg", "reachable_deg", "wall_min_mm")}
+        row["repair"] = told["repair"]["rung"]
+        row["cavities"] = told["cavities"]["count"]
+        held = told["supports"]
         row["unsupported_mm2"] = 0 if held is None else held["unsupported_mm2"]
         row["islands"] = 0 if held is None else held["islands"]
         row["vaults"] = None if held is None else f"{held['added_g']:.2f}"
-        row["base"] = base_text(said["base"])
-        row["seconds"] = sum(said["seconds"].values())
-        row["stages"] = said["seconds"]
-        row["errors"] = [f["rule"] for f in said["findings"] if f["severity"] == "error"]
+        row["base"] = base_text(told["base"])
+        row["seconds"] = sum(told["seconds"].values())
+        row["stages"] = told["seconds"]
+        row["errors"] = [f["rule"] for f in told["findings"] if f["severity"] == "error"]
         return row | judged(model, up, size_mm, part, slice_it)
 
 
-def judged(model: Path, up: str, size_mm: float, part: Path, slice_it: bool) -> dict[str, Any]:
-    """What others say of the written file."""
+def judged(model: Path, up: str, size_mm: float, part: Path, slice_it: bool) -> Row:
+    """Judge the written file with other programs."""
     mesh, warnings = judges.read_strictly(part)
     placed = place(read_mesh(model), up=up, size_mm=size_mm)
     outside, _ = judges.outside_and_cavities(mesh)
     points = judges.samples(judges.Mesh(placed.vertices, placed.faces))
     squared, _, _ = igl.point_mesh_squared_distance(points, outside.vertices, outside.faces)
-    # Where a base was added, the input's outside is buried in it, up to the seat's height.
+    # A base covers the input's outside, up to the seat's height.
     above = points[:, 2] > 1.05
     slicer = find_slicer()
     info = slicer.info(part)
@@ -146,9 +135,9 @@ def base_text(base: dict[str, Any] | None) -> str:
     return f"seat{grown}, {base['mass_g']:.2f} g"
 
 
-def markdown(rows: list[dict[str, Any]]) -> str:
+def markdown(rows: list[Row]) -> str:
     lines = markdown_lines(COLUMNS, rows)
-    feasible = [row for row in rows if row["exit"] == 0 and row["reachable_deg"] is None]
+    feasible = [row for row in rows if "error" not in row and row["reachable_deg"] is None]
     if feasible:
         ratio = np.mean([row["mass_ratio"] for row in feasible])
         lines.append("")

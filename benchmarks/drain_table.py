@@ -1,20 +1,17 @@
-"""Drain a catalogue's models, and have the real slicer's layers judge what they hold shut.
+"""Drain a catalogue's models, and let the real slicer's layers judge what they trap.
 
     python benchmarks/drain_table.py ../shared/models/catalogue.csv -p resin-standard -o table.md
 
-The judge is PrusaSlicer's SLA export at 0.25 mm layers and pixels: trapped and cupped is what its
-pictures hold shut of the cavities, with the drains and without.  Diameters are measured across the
-holes of the final mesh.  With --json, rows that a former run has found are kept.
+The judge is PrusaSlicer's SLA export at 0.25 mm layers and pixels: its pictures show what the
+cavities trap and where they are cups, with the drains and without.  Diameters are measured across
+the holes of the final mesh.  --json keeps the rows of earlier runs.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import trimesh
 from manifold3d import Manifold, OpType
@@ -22,10 +19,9 @@ from manifold3d import Manifold, OpType
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from drain_measures import hole_diameter_mm
-from rows import catalogue, markdown_lines
+from rows import Row, markdown_lines, measured_rows, table_parser
 from sl1_layers import judged_with_and_without
 
-from printprep.errors import PrintprepError
 from printprep.mesh.quantize import quantized, quantized_arrays
 from printprep.pipeline.hollow import hollow
 from printprep.stand.lean import tilt_toward
@@ -52,34 +48,16 @@ COLUMNS = (
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("catalogue", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
-    parser.add_argument("-p", "--profile", default="resin-standard")
-    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
-    parser.add_argument("--only", nargs="*", help="file stems, all without")
-    parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
-    arguments = parser.parse_args()
-    kept = {}
-    if arguments.json and arguments.json.is_file():
-        kept = {row["model"]: row for row in json.loads(arguments.json.read_text("utf-8"))}
-    rows = []
-    for path, up in catalogue(arguments.catalogue, arguments.only):
-        row = kept.get(path.stem)
-        if row is None or "error" in row:
-            try:
-                row = measure(path, up, arguments.size, arguments.profile)
-            except (PrintprepError, ArithmeticError) as error:
-                row = {"model": path.stem, "error": str(error)}
-            sys.stderr.write(json.dumps(row) + "\n")
-        rows.append(row)
-        arguments.output.write_text(markdown(rows), encoding="utf-8")
-        if arguments.json:
-            arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    chosen = table_parser(__doc__, profile="resin-standard").parse_args()
+
+    def one(path: Path, up: str, _: Row) -> Row:
+        return measure(path, up, chosen.size, chosen.profile)
+
+    rows = measured_rows(chosen, one, markdown)
     return 0 if all("error" not in row for row in rows) else 1
 
 
-def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]:
+def measure(path: Path, up: str, size_mm: float, profile: str) -> Row:
     """One row of the table."""
     start = time.process_time()
     result = hollow(path, up=up, size_mm=size_mm, profile=profile)
@@ -89,7 +67,7 @@ def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]
     tilt = tilt_toward(result.stability, result.lean)
     part, wanted = result.part, found.drains[0].diameter_mm if found.drains else None
     off = [abs(hole_diameter_mm(part.manifold, drain) - wanted) for drain in found.drains]
-    row: dict[str, Any] = {
+    row: Row = {
         "model": path.stem,
         "mass_g": result.mass_g,
         "cavities": len(part.cavities),
@@ -117,7 +95,7 @@ def measure(path: Path, up: str, size_mm: float, profile: str) -> dict[str, Any]
 
 
 def watertight(part: Manifold) -> bool:
-    """By trimesh, from the coordinates that are written."""
+    """Whether trimesh finds the written coordinates watertight."""
     vertices, faces = quantized_arrays(part)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     return bool(mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0)
@@ -129,9 +107,8 @@ def stands(reachable_deg: float | None, tilt_deg: float | None, lean_deg: float)
     return "no" if reachable_deg is None else "out of reach"
 
 
-def markdown(rows: list[dict[str, Any]]) -> str:
-    lines = markdown_lines(COLUMNS, rows)
-    return "\n".join(lines) + "\n"
+def markdown(rows: list[Row]) -> str:
+    return "\n".join(markdown_lines(COLUMNS, rows)) + "\n"
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""How long a large G-code takes to measure, and how much memory.
+"""Measure how much time and memory a large G-code takes.
 
     python benchmarks/gcode_reader.py [--megabytes 100]
 
-The file is a cuboid of short beads as PrusaSlicer writes them; what is measured must be it, to
-the digits of E.
+The file is a cuboid of short beads as PrusaSlicer writes them.  The measured volume must be the
+cuboid's, to the digits of E.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def main() -> int:
 
 
 def write(path: Path, size: float) -> tuple[int, int]:
-    """Write layers until the file is that large; how many, and how many moves."""
+    """Write layers until the file is that large; returns how many, and how many moves."""
     e = _STEP_MM * _WIDTH_MM * _HEIGHT_MM / (math.pi / 4 * 1.75**2)
     steps, lines = round(_SIDE_MM / _STEP_MM), round(_SIDE_MM / _WIDTH_MM)
     body = []
@@ -62,7 +62,7 @@ def write(path: Path, size: float) -> tuple[int, int]:
 
 
 def peak_mb() -> float:
-    """The most memory this process had so far."""
+    """The peak memory of this process so far, in MB."""
     kilo = 1 if sys.platform == "darwin" else 1024
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * kilo / 1e6
 

@@ -1,24 +1,21 @@
-"""Infill with ballast, against the ways a model is printed otherwise: all weighed in G-code.
+"""Compare infill with ballast to other ways to print a model, all weighed in G-code.
 
     python benchmarks/infill_table.py ../shared/models/catalogue.csv -o table.md [--size 100]
 
 Each model is sliced four ways with the same profile: with `--fill infill`; with the same walls and
-uniform lightning, and 15 % gyroid, without base or ballast; and hollow, with vaults inside.  Rows
-are kept in the file of --json as they are made, and taken from it when they are there.
+uniform lightning, and 15 % gyroid, without base or ballast; and hollow, with vaults inside.  The
+file of --json keeps the rows, and later runs read them from it.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rows import catalogue, markdown_lines
+from rows import Row, markdown_lines, measured_rows, table_parser
 from verify_table import MODELS
 
 from printprep import hollow
@@ -31,7 +28,7 @@ from printprep.mesh.measure import bodies
 from printprep.profiles import Profile, load_profile
 from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import profile_settings
-from printprep.stand.stability import least
+from printprep.stand.stability import least_stable
 from printprep.types import Solid
 from printprep.verify.run import verify
 
@@ -54,43 +51,33 @@ COLUMNS = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("catalogue", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
-    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
-    parser.add_argument("--profile", default="fdm-pla-0.4")
-    parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
+    parser = table_parser(__doc__, only=MODELS)
     parser.add_argument("--lean", type=float, help="degrees asked for, instead of the profile's")
-    parser.add_argument("--base", default="auto", help="of the parts, as `printprep hollow` has it")
+    parser.add_argument("--base", default="auto", help="of the parts, as in `printprep hollow`")
     parser.add_argument("--no-infill", action="store_true", help="leave out all but hollow parts")
     parser.add_argument("--no-hollow", action="store_true", help="leave out the hollow part")
-    parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
     chosen = parser.parse_args(arguments)
-    kept: dict[str, dict[str, Any]] = {}
-    if chosen.json and chosen.json.is_file():
-        kept = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
     parts = [] if chosen.no_infill else [infill_figures]
     parts += [] if chosen.no_hollow else [hollow_figures]
     options = {"size_mm": chosen.size, "lean": chosen.lean, "base": chosen.base}
-    rows = []
-    for model, up in catalogue(chosen.catalogue, chosen.only):
-        row = {"model": model.stem, **kept.get(model.stem, {})}
+
+    def one(model: Path, up: str, kept: Row) -> Row:
+        row = {"model": model.stem, **kept}
+        row.pop("error", None)
         for figures in parts:
             if figures.__name__ not in row:
-                found = figures(model, load_profile(chosen.profile), {"up": up, **options})
-                row |= found | {figures.__name__: True}
-        rows.append(row)
-        sys.stderr.write(json.dumps(row) + "\n")
-        chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
-        kept[model.stem] = row
-        if chosen.json:
-            text = json.dumps(list(kept.values()), indent=1) + "\n"
-            chosen.json.write_text(text, encoding="utf-8")
-    return 0 if rows and all(row.get("stands", True) for row in rows) else 1
+                row |= figures(model, load_profile(chosen.profile), {"up": up, **options})
+                row[figures.__name__] = True
+        return row
+
+    rows = measured_rows(
+        chosen, one, markdown, done=lambda row: all(part.__name__ in row for part in parts)
+    )
+    return 0 if rows and all("error" not in r and r.get("stands", True) for r in rows) else 1
 
 
-def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> dict[str, Any]:
-    """With ballast, as ``verify`` measures it in a slice of its own, and uniform."""
+def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> Row:
+    """With ballast, as ``verify`` measures it in its own slice, and with uniform infill."""
     with tempfile.TemporaryDirectory() as folder:
         made = hollow(model, profile=profile, fill="infill", **options)
         made.write(Path(folder) / "infill.3mf")
@@ -98,7 +85,7 @@ def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> di
     assert made.infill is not None
     tilt = tilt_as_printed(found.printed, made.lean)
     base_mm3 = made.part.outside.volume() - made.solid.manifold.volume()
-    row: dict[str, Any] = {
+    row: Row = {
         "slicer": found.slicer,
         "infill_g": found.printed.mass_g,
         "infill_deg": tilt,
@@ -119,13 +106,15 @@ def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> di
     for pattern in ("lightning", "gyroid"):
         weighed = uniform(made.solid, slicer, profile, pattern)
         row[f"{pattern}_g"] = None if weighed is None else grams(weighed, profile)
-        row[f"{pattern}_deg"] = None if weighed is None else least(weighed.stabilities).tilt_deg
+        row[f"{pattern}_deg"] = (
+            None if weighed is None else least_stable(weighed.stabilities).tilt_deg
+        )
     row["ratio"] = None if row["lightning_g"] is None else row["infill_g"] / row["lightning_g"]
     return row
 
 
-def hollow_figures(model: Path, profile: Profile, options: dict[str, Any]) -> dict[str, Any]:
-    """With a cavity, its ceilings carried by vaults."""
+def hollow_figures(model: Path, profile: Profile, options: dict[str, Any]) -> Row:
+    """With a cavity whose ceilings stand on vaults."""
     with tempfile.TemporaryDirectory() as folder:
         made = hollow(model, profile=profile, self_support=True, **options)
         part, gcode = Path(folder) / "hollow.3mf", Path(folder) / "hollow.gcode"
@@ -143,7 +132,7 @@ def hollow_figures(model: Path, profile: Profile, options: dict[str, Any]) -> di
 
 
 def uniform(solid: Solid, slicer: Slicer, profile: Profile, pattern: str) -> Weighed | None:
-    """The model as it is, with 15 % of one infill throughout; None where it cannot be sliced.
+    """The model with 15 % of one infill throughout; None where it cannot be sliced.
 
     (A model that touches the bed in a point has no first layer.)
     """
@@ -160,14 +149,14 @@ def grams(weighed: Weighed, profile: Profile) -> float:
     return float(weighed.moments[:, 0].sum()) * profile.material.density_g_cm3 / 1000
 
 
-def markdown(rows: Sequence[dict[str, Any]]) -> str:
-    """The rows as a table, and what they come to."""
+def markdown(rows: Sequence[Row]) -> str:
+    """The rows as a table, with their summary."""
     lines = markdown_lines(COLUMNS, rows)
     return "\n".join([*lines, "", *summary(rows)]) + "\n"
 
 
-def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
-    """Means over the models whose lean can be reached, and for how many the others fall short."""
+def summary(rows: Sequence[Row]) -> list[str]:
+    """Means over the models whose lean is feasible, and how many fall short otherwise."""
     rows = [row for row in rows if "infill_g" in row]
     reached = [row for row in rows if row["reachable_deg"] is None]
     both = [row for row in reached if row["lightning_g"] is not None]
@@ -183,10 +172,10 @@ def summary(rows: Sequence[dict[str, Any]]) -> list[str]:
             mean = np.mean([r["infill_g"] / r[f"{way}_g"] for r in there])
             lines.append(
                 f"- {way}: {len(short)} of {len(tried)} fall short; with ballast "
-                f"{mean:.3f} × its grams on the mean over the {len(there)} that can stand."
+                f"{mean:.3f} × its grams on average over the {len(there)} that can stand."
             )
     if both:
-        lines.append(f"- Most against lightning: {max(r['ratio'] for r in both):.3f}.")
+        lines.append(f"- Largest ratio to lightning: {max(r['ratio'] for r in both):.3f}.")
     return lines
 
 

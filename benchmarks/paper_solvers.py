@@ -1,18 +1,17 @@
-"""The paper's objective by its three solvers, side by side on every model of a catalogue.
+"""Compare the three solvers of the paper's objective on every model of a catalogue.
 
     python benchmarks/paper_solvers.py ../shared/models/catalogue.csv --set dev
 
 Columns: free voxels n; the loss by Adam (fast) and by the plane, each in its own terms; how far the
 plane is below; the share of voxels with the same material, of the whole grid and of the free voxels
 alone; the plane's steps; seconds of the fast Adam, of the plane with its linear form, and of the
-autograd reference (on all of torch's threads, timed over --reference-steps and scaled to a full
-run); and the two ratios.
+autograd reference (on all threads of torch, timed over --reference-steps and scaled to a full run);
+and the two ratios.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 import time
 from pathlib import Path
@@ -21,10 +20,11 @@ import numpy as np
 import torch
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests" / "density"))
+sys.path.insert(0, str(ROOT / "tests" / "paper"))
 
 from paper_models import voxelize  # noqa: E402
 from paper_reference import run_autograd  # noqa: E402
+from rows import catalogue  # noqa: E402
 
 from printprep.paper.adam import solve_adam  # noqa: E402
 from printprep.paper.domain import build_domain  # noqa: E402
@@ -77,12 +77,8 @@ def main() -> None:
         solver(warm, PaperSettings(steps=2))
     print(HEAD)
     print("|" + " --- |" * HEAD.count(" | ") + " --- |")
-    with chosen.catalogue.open(encoding="utf-8", newline="") as handle:
-        rows = [entry for entry in csv.DictReader(handle) if entry["set"] == chosen.set]
-    for entry in rows:
-        path = chosen.catalogue.parent / chosen.set / entry["file"]
-        if not chosen.only or path.stem in chosen.only:
-            print(row(path, entry["up"], settings, chosen.reference_steps), flush=True)
+    for path, up in catalogue(chosen.catalogue, chosen.only, chosen.set):
+        print(row(path, up, settings, chosen.reference_steps), flush=True)
 
 
 if __name__ == "__main__":

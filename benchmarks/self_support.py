@@ -1,33 +1,29 @@
-"""Vault every room of a catalogue's models, and have the real slicer judge what is inside.
+"""Vault the hollowable volumes of a catalogue's models, and let the real slicer judge them.
 
     python benchmarks/self_support.py ../shared/models/catalogue.csv -o table.md [--size 100]
 
-The whole room is vaulted, before any of it is filled for stability: the hardest case.  Added share
-is of that room; flagged area and islands are judged word by word, at places of the layers that the
-building did not all look at; grams of support are PrusaSlicer's, inside the cavity, at its
-automatic threshold and at 45°; the thinnest member is measured across the axis of each column's
-solid.
+The whole hollowable volume is vaulted, before any of it is filled for stability: the hardest case.
+The added share is a share of that volume.  Flagged area and islands follow the rule word by word,
+at layer phases that the building does not all use.  Grams of support are PrusaSlicer's, inside the
+cavity, at its automatic threshold and at 45°.  The thinnest member is measured across the axis of
+each column's solid.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from manifold3d import Manifold
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
-from dev_rooms import room_of
-from rows import catalogue, markdown_lines
+from dev_hollowable import hollowable_of
+from rows import Row, markdown_lines, measured_rows, table_parser
 from support_inside import support_inside_g
 
-from printprep.errors import PrintprepError
 from printprep.mesh.measure import shells
 from printprep.mesh.quantize import quantized
 from printprep.overhang.limits import acceptance
@@ -37,7 +33,7 @@ from printprep.supports import vaulted
 
 COLUMNS = (
     ("model", "model", "{}"),
-    ("room cm³", "room_cm3", "{:.1f}"),
+    ("hollowable cm³", "hollowable_cm3", "{:.1f}"),
     ("capitals", "capitals", "{}"),
     ("columns", "columns", "{}"),
     ("added share", "share", "{:.3f}"),
@@ -55,48 +51,30 @@ AROUND_MM = 3.0
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("catalogue", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
-    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
-    parser.add_argument("--profile", default="fdm-pla-0.4")
-    parser.add_argument("--only", nargs="*", help="file stems, all without")
+    parser = table_parser(__doc__)
     parser.add_argument("--no-slice", action="store_true")
-    parser.add_argument("--json", type=Path, help="the rows as JSON too; those in it are kept")
-    arguments = parser.parse_args()
-    profile = load_profile(arguments.profile)
-    kept = arguments.json is not None and arguments.json.exists()
-    rows = json.loads(arguments.json.read_text(encoding="utf-8")) if kept else []
-    done = {row["model"] for row in rows}
-    for path, up in catalogue(arguments.catalogue, arguments.only):
-        if path.stem in done:
-            continue
-        try:
-            row = measure(path, up, arguments.size, profile, not arguments.no_slice)
-        except (PrintprepError, ArithmeticError) as error:
-            row = {"model": path.stem, "error": str(error)}
-        rows.append(row)
-        sys.stderr.write(json.dumps(row) + "\n")
-        arguments.output.write_text(markdown(rows), encoding="utf-8")
-        if arguments.json:
-            arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    chosen = parser.parse_args()
+    profile = load_profile(chosen.profile)
+
+    def one(path: Path, up: str, _: Row) -> Row:
+        return measure(path, up, chosen.size, profile, not chosen.no_slice)
+
+    rows = measured_rows(chosen, one, markdown)
     return 0 if all("error" not in row for row in rows) else 1
 
 
-def measure(
-    path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool
-) -> dict[str, Any]:
+def measure(path: Path, up: str, size_mm: float, profile: Profile, slice_it: bool) -> Row:
     """One row of the table."""
-    solid, hollowable_volume = room_of(path, up, size_mm, profile)
+    solid, hollowable_volume = hollowable_of(path, up, size_mm, profile)
     if hollowable_volume.is_empty():
-        return {"model": path.stem, "room_cm3": 0.0}
+        return {"model": path.stem, "hollowable_cm3": 0.0}
     wall, cpu = time.perf_counter(), time.process_time()
     vaults = vaulted(hollowable_volume, profile)
-    row: dict[str, Any] = {
+    row: Row = {
         "model": path.stem,
         "seconds": time.perf_counter() - wall,
         "cpu_seconds": time.process_time() - cpu,
-        "room_cm3": hollowable_volume.volume() / 1000,
+        "hollowable_cm3": hollowable_volume.volume() / 1000,
         "capitals": vaults.capitals,
         "columns": vaults.columns,
         "share": vaults.added_mm3 / hollowable_volume.volume(),
@@ -121,18 +99,21 @@ def measure(
 
 
 def _around(void: Manifold) -> Manifold:
-    """A block from the bed on, with material to spare around a void."""
+    """A block on the bed, with enough material around a void."""
     low, high = np.reshape(void.bounding_box(), (2, 3))
     low, high = low - AROUND_MM, high + AROUND_MM
     low[2] = 0.0
     return Manifold.cube((high - low).tolist()).translate(low.tolist())
 
 
-def markdown(rows: list[dict[str, Any]]) -> str:
+def markdown(rows: list[Row]) -> str:
     lines = markdown_lines(COLUMNS, rows)
     shares = [row["share"] for row in rows if "share" in row]
     if shares:
-        lines += ["", f"Mean added share {np.mean(shares):.4f} of {len(shares)} rooms."]
+        lines += [
+            "",
+            f"Mean added share {np.mean(shares):.4f} over {len(shares)} models.",
+        ]
     return "\n".join(lines) + "\n"
 
 

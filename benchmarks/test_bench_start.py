@@ -1,6 +1,6 @@
-"""How long it takes to begin: importing the package (< 0.1 s) and --help's own work (< 0.3 s).
+"""Time the start: importing the package (< 0.1 s) and --help's own work (< 0.3 s).
 
-Each round is a new interpreter; what the bare interpreter takes is measured beside, to subtract.
+Each round starts a new interpreter; the bare interpreter is timed too, to subtract.
 Run:  pytest benchmarks/test_bench_start.py
 """
 

@@ -1,24 +1,20 @@
-"""Hollow models of a catalogue, slice each with the real slicer, and table what would be printed.
+"""Hollow models of a catalogue, slice each with the real slicer, and table the prints.
 
     python benchmarks/verify_table.py ../shared/models/catalogue.csv -o table.md [--size 100]
 
-Every model goes through the library as `printprep hollow` and `printprep verify` take it; the
-figures beside the computed ones are measured from PrusaSlicer's G-code.  Models whose walls the
-domain cannot hold apart, or whose lean is out of reach, are in the table like all others.
+Every model goes through the library as in `printprep hollow` and `printprep verify`.  The figures
+beside the computed ones are measured from PrusaSlicer's G-code.  Models with walls too thin for the
+domain, or with a lean out of reach, are in the table like all others.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import sys
 import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from rows import catalogue, markdown_lines
+from rows import Row, markdown_lines, measured_rows, table_parser
 
 from printprep import hollow
 from printprep.gcode.printed import Printed
@@ -51,35 +47,19 @@ COLUMNS = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("catalogue", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, help="markdown table")
-    parser.add_argument("--size", type=float, default=100.0, help="longest side in mm")
-    parser.add_argument("--profile", default="fdm-pla-0.4")
-    parser.add_argument("--only", nargs="*", default=MODELS, help="file stems")
+    parser = table_parser(__doc__, only=MODELS)
     parser.add_argument("--bare", action="store_true", help="without supports inside cavities")
-    parser.add_argument("--json", type=Path, help="the rows as JSON, kept from run to run")
     chosen = parser.parse_args(arguments)
-    kept: dict[str, dict[str, Any]] = {}
-    if chosen.json and chosen.json.is_file():
-        kept = {row["model"]: row for row in json.loads(chosen.json.read_text(encoding="utf-8"))}
-    rows = []
-    for model, up in catalogue(chosen.catalogue, chosen.only):
-        row = kept.get(model.stem)
-        if row is None:
-            row = measure(model, up, chosen.size, chosen.profile, bare=chosen.bare)
-            sys.stderr.write(json.dumps(row) + "\n")
-        rows.append(row)
-        chosen.output.write_text(markdown(rows), encoding="utf-8", newline="\n")
-        if chosen.json:
-            chosen.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+
+    def one(model: Path, up: str, _: Row) -> Row:
+        return measure(model, up, chosen.size, chosen.profile, bare=chosen.bare)
+
+    rows = measured_rows(chosen, one, markdown)
     return 0 if rows and all(agrees(row) for row in rows) else 1
 
 
-def measure(
-    model: Path, up: str, size_mm: float, profile: str, *, bare: bool = False
-) -> dict[str, Any]:
-    """One row: the whole way from the model to the measured G-code, timed."""
+def measure(model: Path, up: str, size_mm: float, profile: str, *, bare: bool = False) -> Row:
+    """One row, from the model to the measured G-code, with the time."""
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
@@ -98,9 +78,9 @@ def measure(
     }
 
 
-def figures(part: ComputedPart, printed: Printed) -> dict[str, Any]:
-    """A part's figures, computed and printed, and how far they are apart."""
-    said = printed.slicer_summary.filament_mm3
+def figures(part: ComputedPart, printed: Printed) -> Row:
+    """The figures of a part, computed and printed, and their differences."""
+    counted = printed.slicer_summary.filament_mm3
     return {
         "bodies": len(part.bodies),
         "lean_deg": part.lean.angle_deg,
@@ -113,22 +93,21 @@ def figures(part: ComputedPart, printed: Printed) -> dict[str, Any]:
         "tilt_computed_deg": part.tilt_deg,
         "tilt_printed_deg": tilt_as_printed(printed, part.lean),
         "in_cavities_mm3": printed.in_cavities_mm3,
-        "filament_off_percent": None if not said else 100 * (printed.filament_mm3 / said - 1),
+        "filament_off_percent": None if not counted else 100 * (printed.filament_mm3 / counted - 1),
         "print_hours": None
         if printed.slicer_summary.seconds is None
         else printed.slicer_summary.seconds / 3600,
     }
 
 
-def agrees(row: dict[str, Any]) -> bool:
-    """Whether the print is what was computed: what `printprep verify` finds nothing against."""
-    return row["findings"] == "none"
+def agrees(row: Row) -> bool:
+    """Whether the print agrees with the computed part: `printprep verify` has no findings."""
+    return row.get("findings") == "none"
 
 
-def markdown(rows: Sequence[dict[str, Any]]) -> str:
+def markdown(rows: Sequence[Row]) -> str:
     """The rows as a table."""
-    lines = markdown_lines(COLUMNS, rows)
-    return "\n".join(lines) + "\n"
+    return "\n".join(markdown_lines(COLUMNS, rows)) + "\n"
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""Everything printprep raises on purpose, each family with its exit code.
+"""The exceptions that printprep raises on purpose, each family with its exit code.
 
-A message names the file or option, the fact, and, in ``hint``, the way out.  Anything else that
-escapes is a defect of ours (exit code 70).
+A message names the file or option and the fact; ``hint`` says what to do.  Both are sentences: a
+capital letter (or a name) first, a full stop last.  Any other exception that reaches the user is a
+defect of printprep (exit code 70).
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ class PrintprepError(Exception):
 
     Parameters
     ----------
-    message : one sentence that names what it is about and the fact.
-    hint : what to do about it, or None when the message already says so.
+    message : one sentence that names the file or option and the fact.
+    hint : what to do about it, or None where the message already says so.
     """
 
     exit_code: ClassVar[int] = 70
@@ -28,35 +29,35 @@ class PrintprepError(Exception):
 
 
 class UsageError(PrintprepError):
-    """An option, profile key or argument that cannot be meant."""
+    """An invalid option, argument or profile key."""
 
     exit_code = 2
     code = "usage"
 
 
 class InputError(PrintprepError):
-    """The input cannot be read, or is refused."""
+    """A file that cannot be read, or is refused."""
 
     exit_code = 3
     code = "input"
 
 
 class GeometryError(PrintprepError):
-    """The input was read but cannot be made a solid."""
+    """A model that was read but cannot be made a solid."""
 
     exit_code = 4
     code = "geometry"
 
 
 class OutputError(PrintprepError):
-    """The result cannot be written where it was asked for."""
+    """A result that cannot be written to the path given."""
 
     exit_code = 5
     code = "output"
 
 
 class ToolError(PrintprepError):
-    """An external program (a slicer) is missing, failed or answered nonsense."""
+    """An external program (a slicer) that is missing, failed, or gave unusable output."""
 
     exit_code = 6
     code = "tool"

@@ -1,4 +1,4 @@
-"""What a profile may say: its keys, their ranges, and which of them exclude each other."""
+"""The keys of a profile, their allowed ranges, and which of them exclude each other."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _bounded(low: float, high: float, **more: Any) -> Any:
 
 
 def _setting_text(value: object) -> object:
-    """TOML numbers and booleans as a slicer writes them; anything else is left to pydantic."""
+    """TOML numbers and booleans as a slicer writes them; pydantic judges all other values."""
     if isinstance(value, bool):
         return str(int(value))
     return f"{value:g}" if isinstance(value, int | float) else value
@@ -33,7 +33,7 @@ def _setting_text(value: object) -> object:
 def _settings(value: object) -> object:
     if not isinstance(value, Mapping):
         return value
-    if "post_process" in value:  # a file that carries commands must never leave this program
+    if "post_process" in value:  # printprep never writes a file that carries commands
         raise PydanticCustomError("forbidden", "must not hold post_process, which runs commands")
     return {key: _setting_text(item) for key, item in value.items()}
 
@@ -54,7 +54,7 @@ _BedSide = Annotated[float, _bounded(10, 5000)]
 
 
 class Printer(_Frozen):
-    """The machine; nozzle and line width only where there is a nozzle."""
+    """The machine; nozzle_mm and line_width_mm only for fdm."""
 
     nozzle_mm: float | None = _bounded(0.1, 2.0, default=None)
     line_width_mm: float | None = _bounded(0.1, 4.0, default=None)
@@ -66,17 +66,17 @@ class Printer(_Frozen):
 
 
 class Material(_Frozen):
-    """What the part is made of, as printed."""
+    """The material of the part, as printed."""
 
     name: str = Field(min_length=1, max_length=80, strict=True)
     density_g_cm3: float = _bounded(0.1, 25.0)
 
 
 class DrainSettings(_Frozen):
-    """Holes per sealed cavity; count 0 where the process leaves nothing inside to drain.
+    """Drain holes of each sealed cavity; count 0 where the process leaves nothing to drain.
 
-    count : holes of each cavity, at least;  cm3_per_hole : one more for every so much that it
-        holds, where what is inside does not run by itself (powder).
+    count : fewest holes of each cavity;  cm3_per_hole : at least one hole for this much volume, for
+        a filling that does not flow by itself (powder).
     """
 
     diameter_mm: float | None = _bounded(0.3, 50.0, default=None)
@@ -84,14 +84,14 @@ class DrainSettings(_Frozen):
     cm3_per_hole: float | None = _bounded(1.0, 1e6, default=None)
 
     def holes_of(self, volume_mm3: float) -> int:
-        """Holes that a cavity of this volume gets, at least."""
+        """Fewest holes of a cavity with this volume."""
         if not self.cm3_per_hole:
             return self.count
         return max(self.count, math.ceil(volume_mm3 / 1000 / self.cm3_per_hole))
 
 
 class StabilitySettings(_Frozen):
-    """The lean a part must stand, solved for with a margin, and how far a base may go."""
+    """The lean that a part must stand, the margin added to it, and how far a base may grow."""
 
     lean_deg: float = _bounded(0.0, 60.0)
     lean_margin_deg: float = _bounded(0.0, 10.0)
@@ -100,16 +100,16 @@ class StabilitySettings(_Frozen):
 
 
 class SlicerSettings(_Frozen):
-    """Keys every object of the 3MF carries, and the slicer that checks it (None: no check)."""
+    """Slicer keys of every object in the 3MF, and the slicer that checks it (None: no check)."""
 
     object_settings: Annotated[dict[str, str], BeforeValidator(_settings)] = {}
     check_with: Literal["prusa-slicer"] | None = None
 
 
 class InfillSettings(_Frozen):
-    """The slicer's sparse infill, where it takes the place of cavities.
+    """The slicer's sparse infill, which takes the place of cavities (--fill infill).
 
-    perimeters : lines of wall; None: as many as the wall is thick.
+    perimeters : lines in the wall; None for as many as fit into wall_mm.
     """
 
     pattern: Literal["lightning", "gyroid"]
@@ -118,7 +118,7 @@ class InfillSettings(_Frozen):
 
 
 class Profile(_Frozen):
-    """One printer, material and process, with the limits that a part has to keep."""
+    """One printer, material and process, with the limits that a part must keep."""
 
     name: str = Field(min_length=1, strict=True)
     process: Annotated[str, AfterValidator(_known_process)]
@@ -171,11 +171,11 @@ class Profile(_Frozen):
 
     @property
     def object_settings(self) -> Mapping[str, str]:
-        """What a 3MF carries for the slicer: the profile's own keys, and walls all of perimeters.
+        """Slicer keys of every object in the 3MF: the profile's, and walls made of perimeters only.
 
         Where the perimeters of both faces leave a gap, the slicer fills it with infill that
-        overlaps them by a quarter of a line, and a wall of 2.0 to 2.4 mm prints 5 % too heavy.
-        Two perimeters, the slicers' default, close a wall four lines thick.
+        overlaps them by a quarter of a line: a wall of 2.0 to 2.4 mm prints 5 % too heavy.  Two
+        perimeters, the default of slicers, close a wall four lines thick.
         """
         keys = dict(self.slicer.object_settings)
         width_mm = self.printer.line_width_mm

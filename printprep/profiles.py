@@ -1,8 +1,8 @@
-"""What a printer can make: frozen profiles, read from TOML by name or by path, checked on the way.
+"""Reads profiles: one printer, material and process each, from TOML, by name or by path.
 
 A profile is named after its file.  Lengths are mm, densities g/cm³, angles degrees; overhang_deg is
-measured from the vertical.  Every figure of the profiles that come with printprep has its source in
-a comment beside it (:func:`profile_source`).
+measured from the vertical.  In the profiles that come with printprep, a comment beside each figure
+names its source (:func:`profile_source`).
 
 This module imports pydantic: import it inside the function that needs it, not at start-up.
 """
@@ -42,19 +42,19 @@ def profile_source(name: str | Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise UsageError(f"{name}: the profile cannot be read ({error})") from error
+        raise UsageError(f"The profile {name} cannot be read: {error}.") from error
 
 
 def load_profile(
     name_or_path: str | Path | Profile = DEFAULT_PROFILE,
     overrides: Mapping[str, object] = {},
 ) -> Profile:
-    """The profile of that name, at that path, or given; with single keys overridden.
+    """The profile with this name, at this path, or the given one, with single keys overridden.
 
-    overrides : dotted key → value, as {"stability.lean_deg": 12}.  A string is read as a TOML value
-    where it is one ("12", "true"), and is taken as it stands where it is not ("100%").
+    overrides : dotted key → value, as {"stability.lean_deg": 12}.  A string that is a TOML value
+    ("12", "true") becomes that value; any other string ("100%") stays text.
 
-    Raises UsageError that names file, key and the allowed range.
+    Raises UsageError that names the file, the key and the allowed range.
     """
     if isinstance(name_or_path, Profile):
         source, data = f"profile {name_or_path.name}", name_or_path.model_dump()
@@ -64,13 +64,17 @@ def load_profile(
         try:
             data = tomllib.loads(profile_source(name_or_path))
         except tomllib.TOMLDecodeError as error:
-            raise UsageError(f"{source}: not valid TOML: {error}") from error
+            raise UsageError(f"{source} is not valid TOML: {error}.") from error
         if "name" in data:
-            raise UsageError(f"{source}: name is not a key; a profile is named after its file")
+            raise UsageError(
+                f"{source}: name is not a key of a profile.", "A profile is named after its file."
+            )
         data["name"] = path.stem
     for key, value in overrides.items():
         if key == "name":
-            raise UsageError("name cannot be overridden; a profile is named after its file")
+            raise UsageError(
+                "The name of a profile cannot be overridden.", "A profile is named after its file."
+            )
         _override(data, key, value)
     try:
         return Profile.model_validate(data)
@@ -82,7 +86,7 @@ def _folder() -> Path:
     for folder in _FOLDERS:
         if folder.is_dir():
             return folder
-    raise UsageError("the profiles that come with printprep are missing", "install it again")
+    raise UsageError("The profiles that come with printprep are missing.", "Install it again.")
 
 
 def _find(name: str | Path) -> Path:
@@ -93,10 +97,10 @@ def _find(name: str | Path) -> Path:
     if path.is_file():
         return path
     if path.suffix == ".toml" or len(path.parts) > 1:
-        raise UsageError(f"{name}: there is no such profile file")
+        raise UsageError(f"The profile file {name} does not exist.")
     close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f"did you mean {close[0]}?" if close else f"there are: {', '.join(known)}"
-    raise UsageError(f"{name}: there is no profile of that name", hint)
+    hint = f"Did you mean {close[0]}?" if close else f"Use one of {', '.join(known)}."
+    raise UsageError(f"There is no profile named {name}.", hint)
 
 
 def _override(data: dict[str, Any], key: str, value: object) -> None:
@@ -104,7 +108,7 @@ def _override(data: dict[str, Any], key: str, value: object) -> None:
     for table in tables:
         data = data.setdefault(table, {})
         if not isinstance(data, dict):
-            raise UsageError(f"{key}: {table} is not a table of a profile")
+            raise UsageError(f"{key} is not a key of a profile: {table} is not a table.")
     data[last] = _toml_value(value) if isinstance(value, str) else value
 
 
@@ -126,13 +130,15 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
         source = f"{source} as overridden"
     lines = [f"{key} {fact}" for key, fact in facts.items()]
     return UsageError(
-        f"{source}: {'; '.join(lines)}", "printprep profiles show NAME shows every key in use"
+        f"{source}: {'; '.join(lines)}.", "printprep profiles show NAME shows every key in use."
     )
 
 
 def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
-    if kind in ("impossible", "forbidden", "unknown"):
+    if kind in ("impossible", "forbidden"):
         return str(item["msg"])
+    if kind == "unknown":
+        return f"is {item['input']!r}, {item['msg']}"
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""
     if kind == "extra_forbidden" and owner:
@@ -159,7 +165,7 @@ def _model_at(path: tuple[str, ...]) -> type[BaseModel] | None:
 
 
 def _allowed(owner: type[BaseModel], key: str) -> str:
-    """The allowed values in words, from the field's own constraints; "" where it has none."""
+    """The allowed values in words, from the constraints of the field; "" where it has none."""
     field = owner.model_fields.get(key)
     if field is None:
         return ""

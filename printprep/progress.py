@@ -1,7 +1,7 @@
-"""How a long run tells what it is doing: one stage at a time, on stderr, or not at all.
+"""Shows which stage of a long run is at work: one line on stderr, or nothing.
 
-Whoever runs a stage opens ``progress.stage(name)`` around it, by the names in ``STAGES``.
-A ``Stopwatch`` measures the stages of a run as it tells them.
+The code of a stage runs inside ``progress.stage(name)``, with a name from ``STAGES``.  A
+``Stopwatch`` also measures how long each stage takes.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ Stage = Literal[
 STAGES: Mapping[Stage, str] = MappingProxyType(
     {
         "read": "Reading the model",
-        "repair": "Making it a solid",
-        "voxelize": "Measuring how deep the material is",
+        "repair": "Repairing the surface",
+        "voxelize": "Measuring the depth below the surface",
         "cavity": "Cutting the cavity",
         "supports": "Building vaults under the ceilings",
-        "base": "Choosing a base",
+        "base": "Choosing the base",
         "solve": "Finding the lightest filling that stands",
-        "advice": "Looking for what would make it stand",
+        "advice": "Looking for a base or pose that makes it stand",
         "check": "Checking walls, tilt angle and surface",
         "alternative": "Estimating the other fill",
         "simulate": "Simulating how it stands",
@@ -60,15 +60,15 @@ STAGES: Mapping[Stage, str] = MappingProxyType(
 
 
 class Progress(Protocol):
-    """Whatever wants to know which stage runs."""
+    """Receives the stages of a run."""
 
     def stage(self, name: Stage) -> AbstractContextManager[None]:
-        """A context held open while stage ``name`` (a key of ``STAGES``) runs."""
+        """A context that stays open while stage ``name`` (a key of ``STAGES``) runs."""
         ...
 
 
 class Silent:
-    """Says nothing: the default of the Python interface, of ``-q`` and of a redirected stderr."""
+    """Shows nothing: the default in Python, with ``-q``, and where stderr is redirected."""
 
     def stage(self, name: Stage) -> AbstractContextManager[None]:
         del name
@@ -76,7 +76,7 @@ class Silent:
 
 
 class Spinner:
-    """One line on stderr that moves while a stage runs and leaves no trace."""
+    """Shows one moving line on stderr while a stage runs, and removes it afterwards."""
 
     def __init__(self) -> None:
         from rich.console import Console
@@ -93,14 +93,14 @@ SILENT: Progress = Silent()
 
 
 def for_terminal(*, quiet: bool = False) -> Progress:
-    """A spinner when a person watches stderr, silence otherwise."""
+    """A spinner where stderr is a terminal, silence elsewhere."""
     return SILENT if quiet or not sys.stderr.isatty() else Spinner()
 
 
 class Stopwatch:
-    """Measures the stages of a run; ``seconds`` holds them by name, in order.
+    """Passes the stages of a run on and measures them; ``seconds`` holds them by name, in order.
 
-    Seconds go to the summary alone, never into a file that must be the same next time.
+    The seconds go into the summary only, never into a file: the same input gives the same bytes.
     """
 
     def __init__(self, progress: Progress) -> None:
@@ -109,7 +109,7 @@ class Stopwatch:
 
     @contextmanager
     def stage(self, name: Stage) -> Iterator[None]:
-        """Time what runs inside, under this name."""
+        """Add the time of the block to this stage."""
         start = time.perf_counter()
         with self._progress.stage(name):
             yield

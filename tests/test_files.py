@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from printprep.errors import OutputError
-from printprep.files import write_atomically
+from printprep.files import replacing, write_atomically
 
 
 def test_writes_and_replaces(tmp_path: Path) -> None:
@@ -18,6 +18,20 @@ def test_writes_and_replaces(tmp_path: Path) -> None:
     write_atomically(target, b"second")
     assert target.read_bytes() == b"second"
     assert [path.name for path in tmp_path.iterdir()] == ["out.3mf"]
+
+
+def test_replacing_streams_into_the_target_place(tmp_path: Path) -> None:
+    target = tmp_path / "out.gcode"
+    target.write_bytes(b"old")
+    with replacing(target) as out:
+        out.write(b"new")
+        assert target.read_bytes() == b"old"
+    assert target.read_bytes() == b"new"
+    with pytest.raises(ValueError, match="half way"), replacing(target) as out:
+        out.write(b"lost")
+        raise ValueError("half way")
+    assert target.read_bytes() == b"new"
+    assert [path.name for path in tmp_path.iterdir()] == ["out.gcode"]
 
 
 def test_missing_folder_is_named(tmp_path: Path) -> None:

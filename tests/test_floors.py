@@ -39,6 +39,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
         "printprep.process",
         "printprep.progress",
         "printprep.version",
+        "printprep.wording",
     ),
 )
 

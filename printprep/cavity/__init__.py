@@ -1,1 +1,1 @@
-"""From a density to a cavity: field to surface, base, subtraction."""
+"""The cavity and the part: the cavity's surface, the cut, the base, the subtraction."""

@@ -1,8 +1,8 @@
-"""New material around the feet, as clean extrusions: a seat, and a footprint grown outward.
+"""The base: new material around the feet, as clean extrusions.
 
 Feet are never level, and a rounded foot touches the bed in a point.  A seat carries all material
-within a millimetre of the bed straight down to it, layer by layer as it will be printed; growth
-widens that footprint into a low plinth.  (The paper's base B plays the same part in voxels.)
+within a millimetre of the bed straight down to it, layer by layer as it prints.  Growth widens that
+footprint into a low plinth.  (The paper's base B does the same in voxels.)
 """
 
 from __future__ import annotations
@@ -18,24 +18,25 @@ from printprep.types import Base
 if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
-# A column exactly as wide as the gap under a foot would only touch it: coincident walls, which a
-# slicer's welding turns into non-manifold edges.  This much more makes the union a true overlap.
+# A column exactly as wide as the gap under a foot only touches the foot: the walls coincide, and a
+# slicer's welding makes non-manifold edges of them.  This much more makes the union a true overlap.
 OVERLAP_MM = 0.02
 # A section through a flat bottom face is ill-defined; just above it is not.
 JUST_ABOVE_MM = 1e-4
-# Detail below this in a footprint's outline is below what a nozzle or a laser can follow.
+# A nozzle or a laser does not follow finer detail than this in a footprint's outline.
 OUTLINE_MM = 0.01
-# Columns that add less than this are no base at all.
+# Columns that add less than this do not count as a base.
 LEAST_BASE_MM3 = 0.5
 ARC_SEGMENTS = 64
 
 
 @dataclass(frozen=True, eq=False)
 class Feet:
-    """What of a solid lies within the seat height of the bed.
+    """The part of a solid that lies within the seat height of the bed.
 
-    slab : the solid between z = 0 and the seat;  columns : that carried down to the bed, outside
-    the voids the solid already has;  footprint : outline of the columns on the bed.
+    slab : the solid between z = 0 and the seat;  columns : the slab carried down to the bed,
+    outside the voids that the solid already has;  footprint : outline of the columns on the bed;
+    voids : those voids, as positive solids.
     """
 
     slab: Manifold
@@ -46,10 +47,10 @@ class Feet:
 
 
 def feet_of(solid: Manifold, seat_mm: float, first_layer_mm: float, layer_mm: float) -> Feet:
-    """Find the feet of a solid and carry them down, in steps of the layers it will print in.
+    """Find the feet of a solid and carry them down to the bed, in steps of its layers.
 
-    In each layer the gap is what lies in the shadow of material above it, within the seat, but
-    outside the section at the layer's bottom; it is filled from the bed to the layer's top.
+    The gap of a layer lies in the shadow of the seat's material above it, but outside the section
+    at the layer's bottom.  A column fills it from the bed to the layer's top.
     """
     from manifold3d import Manifold, OpType
 
@@ -60,18 +61,18 @@ def feet_of(solid: Manifold, seat_mm: float, first_layer_mm: float, layer_mm: fl
     for bottom, top in zip(bottoms, tops, strict=True):
         above = slab.trim_by_plane((0, 0, 1), float(bottom))
         gap = _shadow(above) - slab.slice(float(bottom) + JUST_ABOVE_MM)
-        # Opened: slivers thinner than the overlap are where outline and section all but agree.
+        # Opening drops slivers thinner than the overlap, where outline and section almost agree.
         gap = _offset(_offset(gap, -OVERLAP_MM), 2 * OVERLAP_MM)
         if not gap.is_empty():
             columns.append(gap.extrude(min(float(top) + OVERLAP_MM, seat_mm)))
     voids = Manifold.batch_boolean(list(shells(solid)[1]), OpType.Add)
-    # The outlines of neighbouring layers nearly coincide: merge what only rounding tells apart.
+    # Outlines of neighbouring layers nearly coincide: merge those that differ by rounding alone.
     joined = (Manifold.batch_boolean(columns, OpType.Add) - voids).simplify(OUTLINE_MM)
     return Feet(slab, joined, _shadow(slab).simplify(OUTLINE_MM), voids, seat_mm)
 
 
 def base_of(feet: Feet, growth_mm: float) -> Base | None:
-    """The base with the footprint grown by ``growth_mm``; None when it would add nothing."""
+    """Build the base with the footprint grown by ``growth_mm``; None when it adds nothing."""
     plinth = feet.columns
     if growth_mm > 0:
         grown = _offset(feet.footprint, growth_mm)

@@ -1,4 +1,4 @@
-"""Cut the cavity along the planes, leave out what is too small, and subtract it."""
+"""Cut the cavity along the planes, drop pieces that are too small, and subtract the rest."""
 
 from __future__ import annotations
 
@@ -19,16 +19,19 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
-# Where a search for the largest ball starts: as many of the points farthest from the surface.
+# A search for the largest ball starts from so many of the deepest points.
 STARTS = 8
-# Cells along the longest side of the first lattice searched for a ball.
+# Points along the longest side of the first lattice that is searched for a ball.
 COARSE_CELLS = 12
 
 
 def cut(
     hollowable_volume: Manifold, parts: Sequence[Manifold], planes: Sequence[Plane | None]
 ) -> Manifold:
-    """What of the room for cavities lies above the plane of its body; one plane for each part."""
+    """Keep the hollowable volume above the plane of its body.
+
+    parts : the bodies of the solid;  planes : one for each of them, None where nothing is filled.
+    """
     from manifold3d import Manifold, OpType
 
     if len(parts) == 1:
@@ -39,16 +42,17 @@ def cut(
     return Manifold.batch_boolean(pieces, OpType.Add)
 
 
-def cavities_of(hollowable_volume: Manifold, min_feature_mm: float) -> tuple[Manifold, ...]:
-    """The pieces of a cavity that can hold a ball of the minimum feature, largest first."""
-    pieces = [
-        piece for piece in bodies(hollowable_volume) if _holds_ball(piece, min_feature_mm / 2)
-    ]
+def cavities_of(cavity: Manifold, min_feature_mm: float) -> tuple[Manifold, ...]:
+    """Pieces of a cavity that can hold a ball of the minimum feature, largest first."""
+    pieces = [piece for piece in bodies(cavity) if _holds_ball(piece, min_feature_mm / 2)]
     return tuple(sorted(pieces, key=lambda piece: (-piece.volume(), piece.bounding_box())))
 
 
 def make_part(solid: Solid, base: Base | None, cavities: Sequence[Manifold]) -> Part:
-    """Unite the solid with its base and subtract the cavities, in the coordinates of a file."""
+    """Unite the solid with its base and subtract the cavities.
+
+    The part's coordinates are rounded as in a written file.
+    """
     from manifold3d import Manifold, OpType
 
     outside = solid.manifold if base is None else solid.manifold + base.manifold
@@ -68,8 +72,8 @@ def _above(hollowable_volume: Manifold, plane: Plane | None) -> Manifold:
 def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
     """Whether a ball of this radius fits inside.
 
-    A lattice is searched, coarse first, since most pieces are roomy; the deepest points of the
-    finest, half a radius apart, are climbed from.
+    The search takes a coarse lattice first, since most pieces are wide.  It climbs from the deepest
+    points of the finest lattice, whose points are half a radius apart.
     """
     box = np.array(piece.bounding_box())
     extents = box[3:] - box[:3]
@@ -92,6 +96,9 @@ def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
 
 
 def _lattice(box: Float, step_mm: float) -> Float:
-    """(n, 3) points in a box, a step apart, half a step from its lower corner."""
+    """(n, 3) mm, points in a box, a step apart, half a step from its lower corner.
+
+    box : (6,) mm, lower and upper corner.
+    """
     axes = [np.arange(box[axis] + step_mm / 2, box[axis + 3], step_mm) for axis in range(3)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

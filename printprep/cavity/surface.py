@@ -1,8 +1,8 @@
 """The cavity's surface: the level set of depth at the wall thickness, within a stated tolerance.
 
 Marching cubes draws chords of the true offset surface.  Where the outside has a reentrant edge the
-offset surface bulges toward it and a chord comes closer than the wall: there the field is lowered
-by what is missing, and drawn again.  The result is still one clean isosurface.
+offset surface bulges toward it, and a chord lies closer than the wall.  There the field is lowered
+by what is missing, and the surface drawn again.  The result is still one clean isosurface.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 # Flat regions may move this much when triangles are merged.
 SIMPLIFY_MM = 0.02
-# Walls thinner than asked by more than the first are not accepted, and then all by more than the
-# second are corrected.  The promise is 0.05.
+# A wall thinner than asked by more than the first is not accepted; then every wall thinner by more
+# than the second is corrected.  The promise is 0.05.
 ACCEPTED_MM = 0.03
 CORRECTED_MM = 0.02
 MOST_CORRECTIONS = 8
@@ -34,22 +34,22 @@ MOST_HALVINGS = 4
 
 
 def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) -> Manifold:
-    """The solid whose surface lies ``wall_mm`` below another's: the room for cavities.
+    """The hollowable volume: all of a solid that lies deeper than ``wall_mm``.
 
     Parameters
     ----------
-    solid : what is hollowed;  field : its depth, exact near the wall's depth; None where
-    nothing is that deep.
+    solid : the solid to hollow;  field : its depth, exact near the wall's depth; None where nothing
+    is that deep.
 
     Returns
     -------
-    Manifold, simplified by at most 0.02 mm, nowhere closer to the solid's surface than the wall
-    less 0.03 mm at the samples taken (facet centres and outside vertices); edges that cross lie
-    up to 0.01 mm closer.
+    Manifold, simplified by at most 0.02 mm.  At the samples (facet centres and outside vertices) it
+    is nowhere closer to the solid's surface than the wall less 0.03 mm; edges that cross lie up to
+    0.01 mm closer.
 
     Raises
     ------
-    ArithmeticError : when correction does not settle (a defect, not a property of the input).
+    ArithmeticError : the correction does not converge (a defect here, not of the input).
     """
     if field is None:
         from manifold3d import Manifold
@@ -58,7 +58,7 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
     outside = Surface.of(solid)
     depth = field.depth_mm.copy()
     for round_ in range(MOST_CORRECTIONS):
-        # Merging flat triangles spends part of the tolerance: less of it each time it was too much.
+        # Merging flat triangles spends part of the tolerance: each round spends less of it.
         cavity = _simplified(isosurface(DepthField(field.grid, depth), wall_mm), 2.0**-round_)
         if cavity.is_empty():
             return cavity
@@ -66,11 +66,11 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
         if missing.max(initial=0.0) <= ACCEPTED_MM:
             return cavity
         _lower(DepthField(field.grid, depth), places, missing)
-    raise ArithmeticError(f"walls of {wall_mm} mm were not reached in {MOST_CORRECTIONS} rounds")
+    raise ArithmeticError(f"Walls of {wall_mm} mm are not reached in {MOST_CORRECTIONS} rounds.")
 
 
 def _simplified(cavity: Manifold, share: float) -> Manifold:
-    """By that share of what is allowed, or by less where it would fold over."""
+    """Simplify by a share of what is allowed, or by less where the surface folds over."""
     for halving in range(MOST_HALVINGS):
         simpler = cavity.simplify(SIMPLIFY_MM * share / 2**halving)
         if simpler.is_empty() or not folded(*arrays(simpler)):
@@ -79,13 +79,13 @@ def _simplified(cavity: Manifold, share: float) -> Manifold:
 
 
 def isosurface(field: DepthField, level_mm: float) -> Manifold:
-    """The region deeper than a level as a manifold (marching cubes, Lewiner et al. 2003)."""
+    """The region of a field above a level, as a manifold (marching cubes, Lewiner et al. 2003)."""
     from manifold3d import Error, Manifold, Mesh64
     from skimage.measure import marching_cubes
 
     pitch = field.grid.pitch_mm
     padded = np.pad(field.depth_mm, 1, constant_values=np.float32(level_mm - 2 * pitch))
-    # A value equal to the level makes triangles of no area; a hair off it does not.
+    # A value equal to the level makes triangles without area; a value just below it does not.
     padded[padded == np.float32(level_mm)] -= np.float32(1e-4 * pitch)
     if not (padded > level_mm).any():
         return Manifold()
@@ -94,12 +94,12 @@ def isosurface(field: DepthField, level_mm: float) -> Manifold:
     # skimage orients faces by the gradient's descent: with depth, outward needs the reverse.
     manifold = Manifold(Mesh64(points, np.ascontiguousarray(faces[:, ::-1]).astype(np.uint64)))
     if manifold.status() != Error.NoError or manifold.volume() <= 0:
-        raise ArithmeticError(f"the isosurface is not a solid: {manifold.status().name}")
+        raise ArithmeticError(f"The isosurface is not a solid: {manifold.status().name}.")
     return manifold
 
 
 def _too_thin(outside: Surface, cavity: Surface, wall_mm: float) -> tuple[Float, Float]:
-    """Points (n, 3) on the cavity that are too close to the outside, and by how much."""
+    """(n, 3) mm, points on the cavity too close to the outside; (n,) mm, what is missing there."""
     import igl
 
     # Vertices lie on the level set to pitch²/(8·wall), below the tolerance: chords are thin.
@@ -115,7 +115,10 @@ def _too_thin(outside: Surface, cavity: Surface, wall_mm: float) -> tuple[Float,
 
 
 def _lower(field: DepthField, places: Float, missing: Float) -> None:
-    """Lower the eight values around each place by what is missing there, in place."""
+    """Lower the eight values around each place by what is missing there.
+
+    The field changes in place.  places : (n, 3) mm;  missing : (n,) mm.
+    """
     corner = np.floor((places - field.grid.origin_mm) / field.grid.pitch_mm).astype(int)
     amount = np.zeros(field.depth_mm.shape, dtype=np.float32)
     last = np.array(field.depth_mm.shape) - 1

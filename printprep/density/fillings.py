@@ -1,4 +1,4 @@
-"""The moments that fillings of free voxels can have, and linear programs over them.
+"""The lightest filling of free voxels: linear programs over the moments that fillings can have.
 
 Notation
   s     (M, M c_x, M c_y, M c_z): mass and first moments of all material
@@ -8,10 +8,10 @@ Notation
   H s ≥ 0, c·s   constraints and cost, linear in s
 
 Every linear functional of s is extremal over Z at a filling that is 0 or 1 by the sign of one
-affine function of position, so Z is explored by such half-space fillings (Dantzig & Wolfe 1960),
-each a mat-vec over the voxels, and the program over the few found so far stays tiny.  The voxels
-near the last half-space then go, with all constraints, to HiGHS, whose multipliers give a lower
-bound over *all* voxels: the certificate.
+affine function of position.  So such half-space fillings explore Z (Dantzig & Wolfe 1960), each a
+mat-vec over the voxels, and the program over the few found so far stays tiny.  The voxels near the
+last half-space then go, with all constraints, to HiGHS, whose multipliers give a lower bound over
+*all* voxels: the certificate.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
-# Rounds of pricing before the program is handed over; the moments of some tens of half-spaces
-# describe a four-dimensional body to far below a voxel.
+# Rounds of pricing at most; the moments of some tens of half-spaces describe a four-dimensional
+# body to far below a voxel.
 MOST_ROUNDS = 400
 
 
@@ -36,8 +36,8 @@ MOST_ROUNDS = 400
 class Filling:
     """An optimal filling.
 
-    rho : (n,) in [0, 1];  moments : (4,) its s, s₀ included.
-    multipliers : (k,) ≥ 0, one per constraint;  bound : no filling costs less (weak duality).
+    rho : (n,) density of each voxel, in [0, 1];  moments : (4,) its s, s₀ included, in mm³ and mm⁴.
+    multipliers : (k,) ≥ 0, one per constraint;  bound : mm³, no filling weighs less (weak duality).
     """
 
     rho: Float
@@ -49,25 +49,27 @@ class Filling:
 class Fillings:
     """Half-space fillings of one set of voxels, kept from one program to the next.
 
-    Parameters
-    ----------
-    moments : (4, n), W in the notation above; row 0 positive.
+    moments : (4, n), W in the notation above, in mm³ and mm⁴; row 0 positive.
     """
 
     def __init__(self, moments: Float) -> None:
+        """moments : (4, n) W."""
         self.moments = np.ascontiguousarray(moments)
         total = self.moments.sum(axis=1)
         self._columns: list[Float] = [np.zeros(4), total]
 
     def cheapest(self, cost: Float) -> tuple[Float, NDArray[np.bool_]]:
-        """Moments (4,) and voxels of the filling that minimises cost · W ρ."""
+        """The filling that minimises cost · W ρ: its moments (4,), and its full voxels (n,) bool.
+
+        cost : (4,).
+        """
         chosen = cost @ self.moments < 0
         return self.moments @ chosen, chosen
 
     def feasible(self, fixed: Float, constraints: Float) -> tuple[float, Float]:
-        """Largest t with H s ≥ t over all fillings, to 1e-9 of the constraints' scale.
+        """Find the largest t with H s ≥ t over all fillings, to 1e-9 of the constraints' scale.
 
-        Stops as soon as a positive t is found: enough to know that the program is feasible.
+        The search stops at the first positive t: then the program is feasible.
 
         Parameters
         ----------
@@ -75,7 +77,7 @@ class Fillings:
 
         Returns
         -------
-        t, and the moments (4,) of the filling (a mean of half-space fillings) that reaches it.
+        t, and the moments (4,) of a filling that reaches it (a mean of half-space fillings).
         """
         scale = np.abs(constraints @ (fixed + self._columns[1])).max() + 1e-300
         while True:
@@ -90,11 +92,11 @@ class Fillings:
         return worst, columns @ weights
 
     def lightest(self, fixed: Float, constraints: Float, gap: float = 1e-7) -> Filling | None:
-        """The filling of least mass with H s ≥ 0, with proof; None when there is none.
+        """Find the filling of least mass with H s ≥ 0, with proof; None when no filling has it.
 
         Parameters
         ----------
-        fixed : (4,) s₀;  constraints : (k, 4) H;  gap : of mass, relative, to prove.
+        fixed : (4,) s₀;  constraints : (k, 4) H;  gap : relative gap of mass to prove.
         """
         if len(self.moments.T) == 0 or np.all(constraints @ fixed >= 0):
             return self._nothing_added(fixed, constraints)
@@ -105,13 +107,14 @@ class Fillings:
         return self._finish(fixed, constraints, multipliers, gap)
 
     def _nothing_added(self, fixed: Float, constraints: Float) -> Filling | None:
+        """The empty filling, or None where s₀ (4,) does not satisfy H (k, 4)."""
         if np.any(constraints @ fixed < 0):
             return None
         empty = np.zeros(self.moments.shape[1])
         return Filling(empty, fixed, np.zeros(len(constraints)), float(fixed[0]))
 
     def _price(self, fixed: Float, constraints: Float) -> Float:
-        """Multipliers (k,) near the optimal ones, by column generation."""
+        """(k,) multipliers near the optimal ones, by column generation."""
         mass = np.array([1.0, 0.0, 0.0, 0.0])
         multipliers = np.zeros(len(constraints))
         for _ in range(MOST_ROUNDS):
@@ -125,7 +128,10 @@ class Fillings:
         return multipliers
 
     def _finish(self, fixed: Float, constraints: Float, multipliers: Float, gap: float) -> Filling:
-        """Solve exactly over the voxels near the half-space, widening until the gap is proven."""
+        """Solve exactly over the voxels near the half-space, widening until the gap is proven.
+
+        fixed : (4,) s₀;  constraints : (k, 4) H;  multipliers : (k,), near the optimal ones.
+        """
         mass = np.array([1.0, 0.0, 0.0, 0.0])
         count = self.moments.shape[1]
         near = 500
@@ -136,8 +142,8 @@ class Fillings:
             band.sort()
             rho = (price < 0).astype(float)
             rho[band] = 0
-            settled = fixed + self.moments @ rho
-            solved = _band_program(settled, constraints, self.moments[:, band])
+            outside = fixed + self.moments @ rho
+            solved = _band_program(outside, constraints, self.moments[:, band])
             if solved is not None:
                 rho[band], multipliers = solved
                 cost = mass - multipliers @ constraints
@@ -146,11 +152,11 @@ class Fillings:
                 if moments[0] - bound <= gap * moments[0] or near == count:
                     return Filling(rho, moments, multipliers, bound)
             elif near == count:
-                raise ArithmeticError("a program known to be feasible was found infeasible")
+                raise ArithmeticError("The solver finds a feasible program infeasible.")
             near *= 4
 
     def _add(self, column: Float) -> bool:
-        """Keep a column; False when it is there already."""
+        """Keep the moments (4,) of a half-space filling; False when they are known already."""
         size = np.abs(self._columns[1]) + 1e-300
         if any(np.all(np.abs(column - known) <= 1e-13 * size) for known in self._columns):
             return False
@@ -159,7 +165,7 @@ class Fillings:
 
 
 def _max_min(values: Float) -> tuple[float, Float, Float]:
-    """Largest t with values @ w ≥ t, w ≥ 0, Σw = 1; also w and the multipliers (they sum to 1)."""
+    """Largest t with values (k, c) @ w ≥ t, w ≥ 0, Σw = 1; w (c,); multipliers (k,), of sum 1."""
     from scipy.optimize import linprog
 
     rows, count = values.shape
@@ -178,7 +184,7 @@ def _max_min(values: Float) -> tuple[float, Float, Float]:
 
 
 def _least_cost(costs: Float, values: Float) -> tuple[float, Float]:
-    """Least costs @ w with values @ w ≥ 0, w ≥ 0, Σw = 1, and the multipliers of the rows."""
+    """Least costs (c,) @ w with values (k, c) @ w ≥ 0, w ≥ 0, Σw = 1; the multipliers (k,)."""
     from scipy.optimize import linprog
 
     scale = np.abs(values).max() + 1e-300
@@ -196,8 +202,11 @@ def _least_cost(costs: Float, values: Float) -> tuple[float, Float]:
     return float(result.fun * unit), np.maximum(-result.ineqlin.marginals, 0) * unit / scale
 
 
-def _band_program(settled: Float, constraints: Float, moments: Float) -> tuple[Float, Float] | None:
-    """Least mass over a few voxels: their densities and the rows' multipliers, or None."""
+def _band_program(outside: Float, constraints: Float, moments: Float) -> tuple[Float, Float] | None:
+    """Least mass over a few voxels: their densities (n,) and the rows' multipliers (k,), or None.
+
+    outside : (4,) moments of all else;  constraints : (k, 4) H;  moments : (4, n) of the voxels.
+    """
     from scipy.optimize import linprog
 
     rows = constraints @ moments
@@ -206,7 +215,7 @@ def _band_program(settled: Float, constraints: Float, moments: Float) -> tuple[F
     result = linprog(
         moments[0] / unit,
         A_ub=-rows / scale,
-        b_ub=constraints @ settled / scale,
+        b_ub=constraints @ outside / scale,
         bounds=(0, 1),
         method="highs",
     )

@@ -1,4 +1,4 @@
-"""The lightest filling that stands when leaned: a linear program with a plane for its optimum.
+"""The lightest filling that stands at a lean: a linear program whose optimum is a plane.
 
 Notation
   n_k, d_k   outward unit normal and offset of edge k of the support polygon, pivot at z = 0
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
-# Close to the largest angle the mass explodes; nine tenths of it cost little (method.md).
+# Close to the largest angle the mass explodes; at nine tenths of it the mass is small.
 SHARE_OF_REACHABLE = 0.9
 
 
 @dataclass(frozen=True, eq=False)
 class LeanSolution:
-    """The lightest filling, or the best there is.
+    """The lightest filling at a lean, or at the best lean that is feasible.
 
     filling : densities of the voxels, moments, bound.
     plane : the cavity lies above it; None when the voxels stay empty.
-    aim_deg : the lean that the filling was solved for; None when none above 0° can be reached.
-    reachable_deg : largest lean of any filling; None when the lean asked for was feasible.
+    aim_deg : the lean that the filling is solved for; None when no lean above 0° is feasible.
+    reachable_deg : largest lean of any filling; None when the lean asked for is feasible.
     """
 
     filling: Filling
@@ -47,15 +47,15 @@ class LeanSolution:
 def solve_lean(
     voxels: Fillings, fixed: Float, footing: Footing, lean_deg: float, margin_deg: float = 0.0
 ) -> LeanSolution:
-    """Least mass that stands at a lean, with a margin where the margin can be had.
+    """Find the filling of least mass that stands at a lean, with a margin where that is feasible.
 
     Parameters
     ----------
-    voxels : the free voxels' moments about the origin, z from the bed.
-    fixed : (4,) moments of everything else.
-    lean_deg, margin_deg : solved at their sum; where only the lean itself is feasible, half way
-    between it and the largest feasible angle; where it is not, at nine tenths of that angle; and
-    where no filling stands upright, nothing is filled.
+    voxels : moments of the free voxels about the origin, z from the bed.
+    fixed : (4,) moments of everything else, in mm³ and mm⁴.
+    lean_deg, margin_deg : the program is solved at their sum; where only the lean itself is
+        feasible, half way between it and the largest feasible angle; where the lean is not
+        feasible, at nine tenths of that angle.  Where no filling stands upright, nothing is filled.
     """
     filling = voxels.lightest(fixed, footing.constraints(lean_deg + margin_deg))
     if filling is not None:
@@ -70,16 +70,19 @@ def solve_lean(
         return LeanSolution(filling, None, None, reachable)
     filling = voxels.lightest(fixed, footing.constraints(aim))
     if filling is None:
-        raise ArithmeticError(f"no filling at {aim}°, below the largest feasible {reachable}°")
+        raise ArithmeticError(
+            f"No filling stands at {aim}°, below the largest feasible {reachable}°."
+        )
     plane = separating_plane(filling, footing, aim)
     return LeanSolution(filling, plane, aim, None if feasible else reachable)
 
 
 def largest_lean(voxels: Fillings, fixed: Float, footing: Footing) -> float:
-    """The largest tilt angle of any filling, degrees; negative when none stands upright.
+    """Find the largest tilt angle of any filling, in degrees; negative when none stands upright.
 
-    Dinkelbach's method (1967) on the ratio of edge distance to height: each round takes the
-    filling that is most ahead of the ratio so far, and its own ratio next.
+    fixed : (4,) moments of everything but the voxels.
+    Dinkelbach's method (1967) on the ratio of edge distance to height: each round takes the filling
+    that is farthest ahead of the ratio so far, and goes on with that filling's own ratio.
     """
     ratio = footing.tangent(fixed)
     while True:
@@ -91,7 +94,7 @@ def largest_lean(voxels: Fillings, fixed: Float, footing: Footing) -> float:
 
 
 def separating_plane(filling: Filling, footing: Footing, lean_deg: float) -> Plane | None:
-    """The plane of an optimal filling: empty where normal · x > offset."""
+    """The plane of an optimal filling: empty where normal · x > offset; None without a plane."""
     if not filling.multipliers.any():
         return None
     affine = filling.multipliers @ footing.constraints(lean_deg)

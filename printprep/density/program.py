@@ -1,4 +1,4 @@
-"""The density of a whole part: the base that makes it lightest, and one plane for each body."""
+"""Choose the base that makes a part lightest, and solve one plane for each of its bodies."""
 
 from __future__ import annotations
 
@@ -28,17 +28,21 @@ if TYPE_CHECKING:
 
 BasePolicy = Literal["auto", "never", "always"]
 
-# Growth is tried in steps of this, then at half steps around the best: mass is flat there.
+# The search tries growth in these steps, then half steps around the best: mass is flat there.
 GROWTH_STEP_MM = 0.5
-# Beyond this a base is a plinth to design, not one to grow.
+# A larger base is a plinth to design, not one to grow.
 MOST_GROWTH_MM = 30.0
-# Two bases within this share of the mass tie, and the simpler one wins.
+# Two bases tie within this share of the mass, and the simpler one wins.
 TIE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class BodySolution:
-    """One body: which cells it has, what was solved, and its (4,) moments at unit density."""
+    """The solution for what stands apart: one body of the solid, or several that a base joins.
+
+    cells : indices of the solid's bodies;  voxels : (n,) indices among the free voxels;
+    solution : None without contact with the bed;  moments : (4,) mm³ and mm⁴, at unit density.
+    """
 
     cells: tuple[int, ...]
     voxels: NDArray[np.intp]
@@ -47,7 +51,7 @@ class BodySolution:
 
     @property
     def reached(self) -> float:
-        """Largest lean reached, +inf when the lean asked for is."""
+        """Largest lean it reaches, in degrees; +inf when it reaches the lean asked for."""
         if self.solution is None:
             return -np.inf
         short = self.solution.reachable_deg
@@ -65,14 +69,14 @@ class Choice:
 
     @property
     def reached(self) -> float:
-        """What its weakest body reaches, degrees; +inf when all stand as asked."""
+        """Largest lean its weakest body reaches, in degrees; +inf when all stand as asked."""
         return min(part.reached for part in self.parts)
 
 
 class Program:
     """The linear programs of one solid, for any base and any lean.
 
-    moments : of each body, (4,), with all its voxels filled.
+    moments : for each body, (4,) mm³ and mm⁴, with all its voxels filled.
     """
 
     def __init__(self, solid: Manifold, interior: Interior, profile: Profile) -> None:
@@ -85,13 +89,13 @@ class Program:
             section_at_bed(body, profile.printer.first_layer_mm) for body in self.bodies
         ]
         self._body_of_voxel = interior.domain.body[interior.domain.free]
-        self._pools: dict[tuple[int, ...], tuple[NDArray[np.intp], Fillings]] = {}
+        self._known: dict[tuple[int, ...], tuple[NDArray[np.intp], Fillings]] = {}
         self._feet: Feet | None = None
 
     def choose(self, policy: BasePolicy, lean: Lean) -> Choice:
-        """The base of least total mass that reaches the lean; none on a tie.
+        """Choose the base of least total mass that reaches the lean; no base on a tie.
 
-        When no base reaches it, the one that reaches farthest.
+        When no base reaches the lean, the one that reaches farthest.
         """
         margin = self.profile.stability.lean_margin_deg
         best: Choice | None = None
@@ -107,23 +111,23 @@ class Program:
             for growth in self._around(best.base.growth_mm):
                 nearby = base_of(self.feet, growth)
                 best = _better(best, self.solve(nearby, lean, margin))
-        # "always" on a solid whose feet are flat and cannot grow: there is nothing to add.
+        # "always" on a solid whose feet are flat and cannot grow adds nothing.
         return best if best is not None else self.solve(None, lean, margin)
 
     def solve(self, base: Base | None, lean: Lean, margin_deg: float) -> Choice:
-        """The lightest filling of every body for one base."""
+        """Solve the lightest filling of every body for one base."""
         volume, bound = 0.0, 0.0
         parts = []
-        for cells, section, fixed in self.standing(base):
-            voxels, pool = self._pool(cells)
-            fixed = fixed - pool.moments.sum(axis=1)
+        for cells, section, fixed in self.bodies_on_base(base):
+            voxels, fillings = self._fillings(cells)
+            fixed = fixed - fillings.moments.sum(axis=1)
             contact = contact_of(section)
             if contact is None:
                 parts.append(BodySolution(cells, voxels, None, fixed))
                 volume, bound = volume + fixed[0], bound + fixed[0]
                 continue
             footing = contact.footing.toward(lean.azimuth_deg)
-            solution = solve_lean(pool, fixed, footing, lean.angle_deg, margin_deg)
+            solution = solve_lean(fillings, fixed, footing, lean.angle_deg, margin_deg)
             parts.append(BodySolution(cells, voxels, solution, solution.filling.moments))
             volume += float(solution.filling.moments[0])
             bound += solution.filling.bound
@@ -132,29 +136,31 @@ class Program:
     def drilled(self, bores: Manifold, hollowable_volume: Manifold) -> Program:
         """The program of the same solid with holes in it.
 
-        bores : what the holes take, of the solid and of the room;  room : what there is left of it
-        for cavities.
+        bores : what the holes remove from the solid and from the hollowable volume.
         """
         interior = reweighed(self.interior, hollowable_volume - bores)
         return Program(self.solid - bores, interior, self.profile)
 
     def weighing(self, moments: Sequence[Float]) -> Program:
-        """The same programs for bodies that, with all their voxels filled, weigh otherwise."""
+        """The same programs for bodies of other masses.
+
+        moments : for each body, (4,) mm³ and mm⁴, with all its voxels filled.
+        """
         other = copy(self)
         other.moments = list(moments)
         return other
 
     def unfilled(self, base: Base | None) -> Float:
-        """(k, 4) moments of what stands apart on a base, with none of its voxels filled."""
+        """(k, 4) mm³ and mm⁴, moments of the bodies on a base with none of their voxels filled."""
         return np.stack(
             [
-                moments - self._pool(cells)[1].moments.sum(axis=1)
-                for cells, _, moments in self.standing(base)
+                moments - self._fillings(cells)[1].moments.sum(axis=1)
+                for cells, _, moments in self.bodies_on_base(base)
             ]
         )
 
     def growth_that_reaches(self, lean: Lean) -> float | None:
-        """Least growth, in steps of half a millimetre up to 30 mm, whose base reaches a lean."""
+        """Least growth of the base that reaches a lean, in steps of 0.5 mm up to 30 mm, or None."""
         steps = round(MOST_GROWTH_MM / GROWTH_STEP_MM)
         low, high = 0, steps + 1
         while high - low > 1:
@@ -166,7 +172,7 @@ class Program:
 
     @property
     def feet(self) -> Feet:
-        """The feet, found when first asked for."""
+        """The solid's feet, found at the first use."""
         if self._feet is None:
             printer = self.profile.printer
             self._feet = feet_of(
@@ -185,7 +191,7 @@ class Program:
                 yield base
 
     def _heavier(self, base: Base, best: Choice) -> bool:
-        """Whether the bare shell with this base, and so with any wider one, outweighs the best."""
+        """Whether the bare shell with this base, and so any wider base, outweighs the best."""
         shell = sum(moments[0] for moments in self.moments) - self.interior.moments[0].sum()
         return bool(shell + (base.manifold - self.feet.slab).volume() > best.volume_mm3)
 
@@ -195,13 +201,15 @@ class Program:
                 yield growth
 
     def _cannot_be_beaten(self, choice: Choice) -> bool:
-        """Standing with nothing filled: any base only adds to that."""
+        """Whether the choice stands with nothing filled: any base only adds mass."""
         return choice.reached == np.inf and all(
             part.solution is not None and part.solution.plane is None for part in choice.parts
         )
 
-    def standing(self, base: Base | None) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
-        """The bodies that stand apart with a base: which of the solid's, section, moments."""
+    def bodies_on_base(
+        self, base: Base | None
+    ) -> Iterator[tuple[tuple[int, ...], CrossSection, Float]]:
+        """What stands apart on a base: the solid's bodies in it, its section, its moments (4,)."""
         from manifold3d import CrossSection
 
         if base is None:
@@ -222,15 +230,16 @@ class Program:
                 moments = moments + _moments(piece - self.feet.slab)
             yield cells, section, moments
 
-    def _pool(self, cells: tuple[int, ...]) -> tuple[NDArray[np.intp], Fillings]:
-        if cells not in self._pools:
-            voxels = np.flatnonzero(np.isin(self._body_of_voxel, cells))
-            self._pools[cells] = voxels, Fillings(self.interior.moments[:, voxels])
-        return self._pools[cells]
+    def _fillings(self, numbers: tuple[int, ...]) -> tuple[NDArray[np.intp], Fillings]:
+        """The free voxels (n,) of bodies, by index, and their fillings."""
+        if numbers not in self._known:
+            voxels = np.flatnonzero(np.isin(self._body_of_voxel, numbers))
+            self._known[numbers] = voxels, Fillings(self.interior.moments[:, voxels])
+        return self._known[numbers]
 
 
 def _better(first: Choice | None, second: Choice) -> Choice:
-    """The lighter of two that stand, else the one that reaches farther; the first on a tie."""
+    """The lighter of two choices that stand, else the one that reaches farther; first on a tie."""
     if first is None:
         return second
     if first.reached == second.reached:
@@ -250,7 +259,7 @@ def _moments(manifold: Manifold) -> Float:
 def _joined(
     solids: Sequence[Manifold], pieces: Sequence[Manifold]
 ) -> Iterator[tuple[tuple[int, ...], list[Manifold]]]:
-    """Groups of bodies that pieces of a base join, each with its pieces."""
+    """Group the bodies that pieces of a base join; each group with its pieces."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

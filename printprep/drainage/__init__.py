@@ -1,1 +1,1 @@
-"""Drain holes, what is filled for them, and what stays inside all the same."""
+"""Drain holes for cavities, and the checks that nothing stays inside a part or sucks at the vat."""

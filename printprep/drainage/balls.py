@@ -1,8 +1,8 @@
-"""Where the centre of a ball can be in a void: the places that a hole of its width can drain.
+"""Find where the centre of a ball fits in a void: the places that a hole of its width can drain.
 
 Clearance is the distance to the void's surface.  It is exact where it decides, near the ball's
-radius, so a ball at rest is found to a few hundredths of a millimetre between two cells of its
-column.  Between columns it is not looked for: a neck hardly wider than the ball counts as closed.
+radius: a ball at rest is placed to a few hundredths of a millimetre between two cells of its
+column.  Nothing is searched between columns: a neck hardly wider than the ball counts as closed.
 """
 
 from __future__ import annotations
@@ -12,25 +12,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.drainage.space import Dexels
+from printprep.drainage.dexels import Dexels
 from printprep.grid.grid import block_around, points_mm
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
-    from printprep.drainage.space import Space
+    from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.grid.distance import Surface
 
-# Clearance on the grid alone is right to this many cells; nearer the radius it is measured.
+# Clearance on the grid alone is right to this many cells; nearer to the radius it is measured.
 UNSURE_CELLS = 1.5
 
 
 @dataclass(frozen=True, eq=False)
 class Balls:
-    """The centres of balls of a radius that fit, as dexels over the grid's columns.
+    """Where the centres of balls of one radius fit, as dexels over the grid's columns.
 
-    volume_mm3 : (n,) of the void nearest to each dexel, which drains with it.
-    nearest : (k,) for every void cell, in C order, the dexel nearest to it;  −1 without any.
-    body : (n,) which connected part of the void each dexel lies in.
+    volume_mm3 : (n,) mm³, void nearest to each dexel, which drains with it.
+    nearest : (k,) for every void cell, in C order, the dexel nearest to it;  −1 for none.
+    body : (n,) the connected part of the void that each dexel lies in.
     """
 
     radius_mm: float
@@ -40,11 +40,14 @@ class Balls:
     body: Int
 
 
-def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
-    """The balls of a radius that fit in a part's void, whose surface is given."""
+def balls_in(voxelized: VoxelizedPart, surface: Surface, radius_mm: float) -> Balls:
+    """Find the balls of one radius that fit in a part's void.
+
+    surface : of the void.
+    """
     from scipy.ndimage import distance_transform_edt, generate_binary_structure, label
 
-    grid, void = space.grid, space.void
+    grid, void = voxelized.grid, voxelized.void
     nothing = np.zeros(0, dtype=np.int64)
     if not void.any():
         dexels = Dexels(nothing, np.zeros(0), np.zeros(0))
@@ -57,7 +60,7 @@ def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
     index = np.ravel_multi_index(tuple(at.T), grid.shape)
     clearance[unsure] = surface.distance_mm(points_mm(grid, index))
     fits = inside & (clearance >= radius_mm)
-    number, dexels = _runs(space, block, clearance, fits, radius_mm)
+    number, dexels = _runs(voxelized, block, clearance, fits, radius_mm)
     count = len(dexels.column)
     if not count:
         every = np.full(int(void.sum()), -1, dtype=np.int64)
@@ -65,7 +68,7 @@ def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
     where = distance_transform_edt(~fits, return_distances=False, return_indices=True)
     nearest = number[tuple(where)][inside].astype(np.int64)
     piece, _ = label(inside, structure=generate_binary_structure(3, 3))
-    # A void that holds no ball is nobody's
+    # A void that holds no ball belongs to no dexel
     body = np.zeros(count, dtype=np.int64)
     body[number[fits]] = piece[fits]
     nearest = np.where(body[nearest] == piece[inside], nearest, -1)
@@ -75,14 +78,18 @@ def balls_in(space: Space, surface: Surface, radius_mm: float) -> Balls:
 
 
 def _runs(
-    space: Space,
+    voxelized: VoxelizedPart,
     block: tuple[slice, slice, slice],
     clearance: Float,
     fits: np.ndarray,
     radius_mm: float,
 ) -> tuple[Int, Dexels]:
-    """Runs of cells of a column that fit, numbered; their ends lie between cells."""
-    grid = space.grid
+    """Number the runs of fitting cells in each column, and find their ends between cells.
+
+    clearance : (a, b, c) mm, fits : (a, b, c) bool, both of the block.
+    Returns (a, b, c) the run's number, valid where a cell fits, and the runs as dexels.
+    """
+    grid = voxelized.grid
     pitch = grid.pitch_mm
     before = np.zeros_like(fits)
     before[:, :, 1:] = fits[:, :, :-1]
@@ -94,6 +101,7 @@ def _runs(
     _, _, high = np.nonzero(ends)
 
     def end(k: Int, way: int) -> Float:
+        """(n,) mm, heights where runs end that reach to cells k (n,), upward or downward."""
         here, there = clearance[i, j, k], clearance[i, j, k + way]
         share = (here - radius_mm) / np.maximum(here - there, 1e-9)
         z = grid.origin_mm[2] + pitch * (k + block[2].start)

@@ -1,4 +1,4 @@
-"""A drilled channel: where it begins, where it comes out, and its shape as a solid."""
+"""A drilled channel: its inner end, its mouth, and its solid."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-# Sides of a channel's section; its flats, not its corners, lie at the diameter asked for.
+# Sides of a channel's section; its flats, not its corners, are the diameter apart.
 SEGMENTS = 64
 # Rings of the ball at a channel's inner end.
 RINGS = 12
@@ -22,10 +22,10 @@ RINGS = 12
 class Channel:
     """A straight round channel from inside a cavity into the air.
 
-    inner_mm : (3,) centre of the ball at its inner end, which fits in the cavity.
+    inner_mm : (3,) mm, centre of the ball at its inner end, which fits in the cavity.
     axis : (3,) unit vector, outward;  diameter_mm : between opposite flats.
-    mouth_mm : where the axis comes out, from the inner end;  end_mm : where the drill stops.
-    length_mm : of the axis in material.
+    mouth_mm : along the axis from the inner end to the outside;  end_mm : to where the drill stops.
+    length_mm : length of the axis in material.
     low_mm : height of its lowest point, at mouth or inner end.
     """
 
@@ -39,7 +39,7 @@ class Channel:
 
     @property
     def centre_mm(self) -> Float:
-        """(3,) the middle of the mouth, on the part's outside."""
+        """(3,) mm, the middle of the mouth, on the part's outside."""
         return self.inner_mm + self.mouth_mm * self.axis
 
     @property
@@ -49,7 +49,7 @@ class Channel:
 
 
 def bored(channel: Channel) -> Manifold:
-    """The channel as a solid: what the drill takes, rounded at its inner end."""
+    """The solid that the drill removes, rounded at its inner end."""
     radius = channel.diameter_mm / 2 / np.cos(np.pi / SEGMENTS)
     angle = np.linspace(-np.pi / 2, 0, RINGS + 1)
     profile = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
@@ -59,7 +59,10 @@ def bored(channel: Channel) -> Manifold:
 
 
 def placed(profile: Float, origin_mm: Float, axis: Float) -> Manifold:
-    """A solid of revolution: profile (n, 2) of radius and way along an axis through a point."""
+    """A solid of revolution about an axis through a point.
+
+    profile : (n, 2) mm, radius and position along the axis;  origin_mm : (3,) mm;  axis : (3,).
+    """
     from manifold3d import CrossSection
 
     upright = CrossSection([profile]).revolve(SEGMENTS)
@@ -67,7 +70,7 @@ def placed(profile: Float, origin_mm: Float, axis: Float) -> Manifold:
 
 
 def frame(axis: Float) -> Float:
-    """(3, 3) a right-handed frame whose third column is the axis."""
+    """(3, 3) a right-handed frame whose third column is the axis (3,)."""
     aside = np.eye(3)[int(np.argmin(np.abs(axis)))]
     first = np.cross(aside, axis)
     first /= np.linalg.norm(first)

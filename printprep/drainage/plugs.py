@@ -1,4 +1,4 @@
-"""Plugs for drain holes: tapered, flush with the part's outside, each a piece to print apart."""
+"""Plugs for drain holes: tapered, flush with the part's outside, printed as separate pieces."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
     from printprep.types import Drain
 
-# A plug is as wide as its hole at the mouth, and narrower by this at its tip: it wedges on the way.
+# A plug is as wide as its hole at the mouth and narrower by this at its tip, so that it wedges.
 TAPER_MM = 0.3
-# No longer than this many diameters, and never longer than its hole.
+# A plug is no longer than this many diameters, nor than its hole.
 LONGEST = 2.0
 
 
 def plug(drain: Drain, outside: Manifold) -> Manifold:
     """The plug of a drain, upright with its tip on the plate z = 0, centred on x = y = 0.
 
-    outside : the part without its cavities, whose surface the plug's outer end continues.
+    outside : the part without its cavities; its surface continues over the plug's outer end.
     """
     radius = drain.diameter_mm / 2
     length = min(drain.length_mm, LONGEST * drain.diameter_mm)

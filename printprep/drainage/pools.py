@@ -1,10 +1,10 @@
-"""What stays in a cavity as it stands: pools, by where the centre of a ball can roll.
+"""Pools: what stays in a cavity as it stands, by where the centre of a ball can roll.
 
-Its places are a network of dexels, upright stretches over the grid's columns: two of neighbouring
-columns join where they overlap.  Priority flood (Barnes, Lehman and Mulla, "Priority-flood",
-Computers & Geosciences 62, 2014) gives each the level down to which it empties through the outlets
-there are: the lowest pass on the way, and a slope along it, so that what is filled up to that level
-drains too.
+The ball's places are a network of dexels, vertical stretches over the grid's columns; two of
+neighbouring columns join where they overlap.  Priority flood (Barnes, Lehman and Mulla,
+"Priority-flood", Computers & Geosciences 62, 2014) gives each dexel the level down to which it
+empties through the outlets: the lowest pass on the way, plus a slope along it, so that a floor
+filled up to that level drains too.
 """
 
 from __future__ import annotations
@@ -21,34 +21,38 @@ if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
     from printprep.drainage.balls import Balls
     from printprep.drainage.channel import Channel
-    from printprep.drainage.space import Dexels
+    from printprep.drainage.dexels import Dexels
     from printprep.types import Grid
 
-# Floors fall toward an outlet by this much of the way there: about half a degree.
+# Filled floors fall toward an outlet by this share of the way there: about half a degree.
 SLOPE = 0.01
 # Liquid that stands lower than this is a film.
 LEAST_MM = 0.01
-# Filled floors lie this much above the channel's, so that they meet it from above.
+# Filled floors lie this much above the channel's floor, so that they meet it from above.
 RAISED_MM = 0.1
-# A ball that only just fits has this much of its column for itself.
+# A dexel counts as at least this long, where a ball only just fits.
 SHORTEST_MM = 0.01
-# A dexel that ends this near to a height passes by it.
+# A dexel that ends this near to a height still reaches it.
 NEAR_MM = 0.15
 
 
 @dataclass(frozen=True, eq=False)
 class Outlet:
-    """Where a cavity empties: the dexels that an outlet's inner end touches, and to what level."""
+    """Where a cavity empties.
+
+    dexels : (k,) those that an outlet's inner end touches;  level_mm : height down to which they
+    empty.
+    """
 
     dexels: Int
     level_mm: float
 
 
 class Pools:
-    """The centres of a ball in a cavity as a network in which it rolls, and what it leaves."""
+    """The network in which a ball's centre rolls through a cavity, and the pools it leaves."""
 
     def __init__(self, balls: Balls, grid: Grid, *, diagonal: bool = True) -> None:
-        """diagonal : whether balls roll between columns that touch by an edge alone."""
+        """diagonal : whether balls roll between columns that share only an edge."""
         self.balls = balls
         self._steps = 4 if diagonal else 2
         self.grid = grid
@@ -58,7 +62,11 @@ class Pools:
 
     @cached_property
     def _links(self) -> tuple[Int, Int, Float]:
-        """Pairs of joined dexels, each both ways, sorted by the first: starts, others, ways."""
+        """The joined pairs of dexels, each both ways, sorted by the first.
+
+        starts : (n + 1,) where the links of each dexel begin;  others : (m,) the dexel at the other
+        end of each link;  ways : (m,) mm, the links' lengths.
+        """
         _, ny, _ = self.grid.shape
         column = self.dexels.column
         count = len(column)
@@ -87,9 +95,9 @@ class Pools:
         return starts, to[sorting], ways
 
     def levels(self, outlets: Sequence[Outlet], slope: float = SLOPE) -> Float:
-        """(n,) level in mm down to which each dexel empties, at least its floor; inf where none.
+        """(n,) mm, level down to which each dexel empties, at least its floor; inf for not at all.
 
-        A dexel at its own floor is empty.  slope : of the liquid's surface, 0 as it stands.
+        A dexel at its own floor is empty.  slope : of the liquid's surface, 0 at rest.
         """
         starts, others, ways = self._links
         first, to, rise = starts.tolist(), others.tolist(), (slope * ways).tolist()
@@ -111,16 +119,16 @@ class Pools:
             for link in range(first[dexel], first[dexel + 1]):
                 other = to[link]
                 through = max(height + rise[link], floor[other])
-                # Over the pass there must be room left under both ceilings
+                # The pass lies below both ceilings
                 if through < level[other] and through < ceiling[other] and through < ceiling[dexel]:
                     level[other] = through
                     heapq.heappush(heap, (through, other))
         return np.array(level)
 
     def tops_mm(self, channels: Sequence[Channel]) -> Float:
-        """(k,) how high every void cell has to be filled so that the rest drains, else −inf.
+        """(k,) mm, height up to which every void cell is filled so that the rest drains, else −inf.
 
-        What a ball cannot leave reaches up to a radius below where its centre passes out.
+        Liquid that a ball cannot leave reaches up to a radius below its centre's way out.
         """
         levels = self.levels(self.outlets(channels))
         wet = levels > self.dexels.low_mm + LEAST_MM
@@ -128,21 +136,22 @@ class Pools:
         nearest = self.balls.nearest
         if not len(tops):
             return np.full(len(nearest), np.inf)
-        # A void that holds no ball is left to smaller ones
+        # A void that holds no ball is left to smaller balls
         return np.where(nearest >= 0, tops[nearest], -np.inf)
 
-    def standing_mm(self, levels: Float) -> Float:
-        """(n,) how high liquid stands over each dexel's floor."""
+    def liquid_depth_mm(self, levels: Float) -> Float:
+        """(n,) mm, height of the liquid over each dexel's floor, at levels (n,) mm."""
         high = np.maximum(self.dexels.high_mm, self.dexels.low_mm + SHORTEST_MM)
         return np.minimum(levels, high) - self.dexels.low_mm
 
-    def largest(self, standing_mm: Float, excluded: Int) -> tuple[Int, float]:
-        """The dexels of the pool that holds most, and what it holds in mm³.
+    def largest(self, depth_mm: Float, excluded: Int) -> tuple[Int, float]:
+        """The dexels (k,) of the pool that holds most, and its volume in mm³.
 
-        excluded : dexels whose pools are not asked for.
+        depth_mm : (n,) mm, height of the liquid over each floor;  excluded : (m,) dexels whose
+        pools do not count.
         """
-        label = self.connected(standing_mm > 0)
-        held = self.volume_mm3 * np.minimum(standing_mm / self._long_mm, 1.0)
+        label = self.connected(depth_mm > 0)
+        held = self.volume_mm3 * np.minimum(depth_mm / self._long_mm, 1.0)
         volume = np.bincount(label[label >= 0], weights=held[label >= 0])
         volume[label[excluded][label[excluded] >= 0]] = 0.0
         if not len(volume) or volume.max() <= 0:
@@ -151,20 +160,20 @@ class Pools:
         return np.flatnonzero(label == number), float(volume[number])
 
     def held_below_mm3(self, pool: Int, levels_mm: Float) -> Float:
-        """(n,) what some dexels hold below each of these levels."""
+        """(m,) mm³, what the dexels of a pool (k,) hold below each of the levels (m,) mm."""
         deep = (levels_mm[:, None] - self.dexels.low_mm[pool]) / self._long_mm[pool]
         result: Float = np.clip(deep, 0.0, 1.0) @ self.volume_mm3[pool]
         return result
 
     def outlets(self, channels: Sequence[Channel]) -> list[Outlet]:
-        """Where these channels drain the network, and down to what level."""
+        """Where channels drain the network, and down to what level."""
         lower = self.balls.radius_mm + RAISED_MM
         return [Outlet(self.over(channel), channel.floor_mm + lower) for channel in channels]
 
     def over(self, channel: Channel) -> Int:
-        """The dexels that pass by a channel's inner end."""
+        """(k,) the dexels that pass by a channel's inner end."""
         point = channel.inner_mm
-        # A smaller ball rests lower in the one at the end
+        # A smaller ball rests lower in the ball at the end
         spare = channel.diameter_mm / 2 - self.balls.radius_mm
         reach_mm = max(0.3 * channel.diameter_mm, 0.75 * self.grid.pitch_mm)
         i, j = np.divmod(self.dexels.column, self.grid.shape[1])
@@ -175,12 +184,12 @@ class Pools:
         return np.flatnonzero(near)
 
     def holding(self, others: Dexels) -> Int:
-        """(m,) the dexel that each of some others, of a larger ball, lies in, −1 where none."""
+        """(m,) the dexel that each dexel of a larger ball lies in, −1 for none."""
         own = self.dexels
         middle = (others.low_mm + others.high_mm) / 2
         if not len(own.column):
             return np.full(len(middle), -1, dtype=np.int64)
-        # One key in the order of dexels: columns are farther apart than any two heights
+        # One key in the order of dexels: columns lie farther apart than any two heights
         apart = 1.0 + 2.0 * float(np.abs(np.concatenate([own.low_mm, middle])).max())
         key = own.column * apart + own.low_mm
         found = np.searchsorted(key, others.column * apart + middle, side="right") - 1
@@ -188,7 +197,10 @@ class Pools:
         return np.where((found >= 0) & inside, found, -1)
 
     def connected(self, wet: Bool) -> Int:
-        """(n,) the number of the pool that each wet dexel belongs to, else −1."""
+        """(n,) the number of the pool that each wet dexel belongs to, else −1.
+
+        wet : (n,) bool.
+        """
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import connected_components
 

@@ -1,9 +1,9 @@
-"""What layers still hold shut of cavities whose pools are filled: dents and tips of any size.
+"""Fill residual pools: dents and tips of any size that the filling of larger pools leaves.
 
-Balls tell where a hole is wanted and what a hole can drain.  Their fillings meet in steps, and
-leave dents between them that no ball of theirs knows of.  So the floor that is left is flooded once
-more, as drops run: on columns twice as fine and to the exact heights of its surface.  Drops run
-between columns that touch by a side, as pixels of a layer do.
+Balls find where a hole is needed and what a hole can drain.  Their fillings meet in steps, with
+dents between them that no ball resolves.  So the remaining floor is flooded once more, as drops
+run: on columns twice as fine, to the exact heights of the surface.  Drops run between columns that
+share a side, as pixels of a layer do.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from printprep.cavity.surface import isosurface
 from printprep.drainage.balls import Balls
+from printprep.drainage.dexels import Dexels, dexels_of
 from printprep.drainage.pools import LEAST_MM, SLOPE, Pools
-from printprep.drainage.space import Dexels, dexels_of
 from printprep.grid.distance import DepthField
 from printprep.grid.grid import cropped
 from printprep.types import Grid
@@ -28,24 +28,24 @@ if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
     from printprep.drainage.channel import Channel
 
-# A dent less deep than this is a film.
+# A shallower dent holds a film only.
 FILM_MM = 0.03
-# Nothing runs where the ceiling is no higher than this above the floor: such cracks stay where one
-# filling ends below another.
+# Nothing runs where the ceiling is no higher than this above the floor: such cracks remain where
+# one filling ends below another.
 CRACK_MM = 0.3
-# Half of what floors fall by already: drops run by sides, up to √2 as far, and refill no floor.
+# Half of the slope of the floors: drops run by sides, up to √2 as far, and refill no floor.
 FALL = SLOPE / 2
-# Cells that a filling reaches beyond its own, into the wall around, and room for it in a grid.
+# Cells that a filling reaches beyond its own, into the wall around, and the grid's margin for it.
 INTO_WALL = 2.5
 MARGIN = 4
-# Beside its own cells a filling lies this much of a cell below the floor, so as to take none of it.
+# Beside its own cells a filling lies this share of a cell below the floor: there it fills nothing.
 UNDER_FLOOR = 0.25
 
 
 def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float) -> Manifold:
-    """The solid that fills what does not run out of a void to these outlets; it reaches into walls.
+    """The solid that fills what does not run out of a void through outlets; it reaches into walls.
 
-    pitch_mm : of the columns it looks at.
+    channels : the outlets;  pitch_mm : of the columns on which drops run.
     """
     from manifold3d import Manifold, OpType
 
@@ -54,15 +54,13 @@ def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float)
     grid = _grid_over(void, pitch_mm)
     dexels = dexels_of(void, grid)
     nothing = np.zeros(len(dexels.column))
-    hollowable_volume = Dexels(dexels.column, dexels.low_mm, dexels.high_mm - CRACK_MM)
-    drops = Balls(
-        0.0, hollowable_volume, nothing, nothing.astype(np.int64), nothing.astype(np.int64)
-    )
-    pools = Pools(drops, grid, diagonal=False)
+    above_cracks = Dexels(dexels.column, dexels.low_mm, dexels.high_mm - CRACK_MM)
+    unused = nothing.astype(np.int64)
+    pools = Pools(Balls(0.0, above_cracks, nothing, unused, unused), grid, diagonal=False)
     levels = pools.levels(pools.outlets(channels), FALL)
-    standing = levels - dexels.low_mm
-    label = pools.connected(standing > LEAST_MM)
-    deep = np.unique(label[standing > FILM_MM])
+    depth = levels - dexels.low_mm
+    label = pools.connected(depth > LEAST_MM)
+    deep = np.unique(label[depth > FILM_MM])
     floor = Floor(grid, dexels, np.where(label >= 0, levels, -np.inf))
     return Manifold.batch_boolean(
         [Manifold(), *(floor.filled(np.flatnonzero(label == dent)) for dent in deep)], OpType.Add
@@ -70,13 +68,14 @@ def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float)
 
 
 class Floor:
-    """The floor of a void as heights over columns, with levels up to which it is to be raised.
+    """The floor of a void as heights over columns, with levels to raise it to.
 
-    level_mm : (n,) mm, for each dexel, −inf where its floor is left;  top_mm : (n,) mm, the same,
-        just below the floor where that is left.
+    level_mm : (n,) mm, for each dexel, −inf where its floor stays;  top_mm : (n,) mm, the same, but
+        just below the floor where that stays.
     """
 
     def __init__(self, grid: Grid, dexels: Dexels, level_mm: Float) -> None:
+        """level_mm : (n,) mm, for each dexel."""
         self.grid = grid
         self.dexels = dexels
         dry = dexels.low_mm - UNDER_FLOOR * grid.pitch_mm
@@ -86,12 +85,11 @@ class Floor:
         self._dexel.reshape(-1)[cell] = dexel
 
     def filled(self, dent: Int) -> Manifold:
-        """The solid that raises the floor in the dexels numbered ``dent`` (k,), and meets it all
-        around."""
+        """The solid that raises the floor of a dent (k,) of dexels, up to the floor around it."""
         from scipy.ndimage import distance_transform_edt
 
         at = np.column_stack(np.unravel_index(self._cells(dent)[0], self.grid.shape))
-        # The grid's own margin is as wide: the block stays within it.
+        # The grid has the same margin, so the block stays within it.
         start, stop = at.min(axis=0) - MARGIN, at.max(axis=0) + MARGIN + 1
         i, j, k = map(slice, start, stop)
         block = (i, j, k)
@@ -108,7 +106,10 @@ class Floor:
         return isosurface(DepthField(grid, field.astype(np.float32)), 0.0)
 
     def _cells(self, of: Int) -> tuple[Int, Int]:
-        """Cells, flat, whose centres lie in these dexels, and whose they are; one each at least."""
+        """Flat cells (m,) whose centres lie in dexels ``of`` (k,), and the dexel (m,) of each.
+
+        Each dexel has at least one cell.
+        """
         low, pitch = self.grid.origin_mm[2], self.grid.pitch_mm
         first = np.ceil((self.dexels.low_mm[of] - low) / pitch).astype(np.int64)
         last = np.floor((self.dexels.high_mm[of] - low) / pitch).astype(np.int64)

@@ -1,1 +1,1 @@
-"""The paper's tables, on any folder of models, in the paper's voxel picture."""
+"""The paper's evaluation, on any set of models, on the paper's voxels."""

@@ -1,4 +1,4 @@
-"""What each method makes of a model's voxels."""
+"""Run each method on a model's voxels; a body is a method's result."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-# The lean that is matched is met from below by this, so that rounding does not put it out of reach.
+# The program aims so much below the lean to match, so that rounding does not put it out of reach.
 _HAIR_DEG = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A method's result.
+    """The result of a method on one model.
 
-    weight : (N, N, N) density of what is built; 0 or 1 but for a few voxels on a lean's plane.
-    solid : (N, N, N) bool, O;  outside : the same and what of B is built, so without the cavity.
+    weight : (N, N, N) density of the material; 0 or 1 except for a few voxels on a lean's plane.
+    solid : (N, N, N) bool, O;  outside : (N, N, N) bool, O with the built part of B, no cavity.
     ground : index of the layer on the bed.
     lean_deg : the lean asked for, None for a method without one.
-    reachable_deg : the largest lean there is, where it is less than that.
+    reachable_deg : the largest lean of any filling, where it is less than that.
     """
 
     weight: Float
@@ -45,12 +45,12 @@ def body_of(
 ) -> Body:
     """Run a method on an occupancy (N, N, N) bool.
 
-    frozen : of the same shape, voxels that belong to the shell beside the outermost layer of O.
+    frozen : (N, N, N) bool, voxels of the shell in addition to the outermost layer of O.
 
-    What the paper's objective builds is V = {ρ̃ > 0.5}, so V is what is weighed and judged.  A lean
-    program's plane can pass through a few voxels; they weigh what lies below it.
+    The paper's objective builds V = {ρ̃ > 0.5}, so V is weighed and judged.  The plane of a lean
+    program can pass through a few voxels; they weigh the share below it.
 
-    Raises GeometryError when nothing is occupied.
+    Raises GeometryError when no voxel is occupied.
     """
     domain = build_domain(occupied, method.settings, shell="boundary")
     if frozen is not None:
@@ -73,11 +73,11 @@ def body_of(
 
 
 def _at_paper_tilt(domain: PaperDomain, method: Method) -> Body:
-    """The lightest that stands at the lean at which the paper's result tips over.
+    """The lightest body that stands at the lean at which the paper's result tips over.
 
-    Its footprint is among those tried, so the paper's result is one of the fillings, and none
-    lighter is missed: never heavier.  Where the paper's result falls by itself the angle is
-    negative; what is matched then is how far its centre lies beyond the edge, for its height.
+    Its footprint is among those tried, so the paper's result is one of the fillings, and the body
+    is never heavier.  Where the paper's result falls by itself the angle is negative: then the body
+    matches how far its centre lies beyond the edge, for its height.
     """
     paper = _paper(domain, method)
     lean = tilt_deg(paper, domain.ground) - _HAIR_DEG
@@ -87,7 +87,7 @@ def _at_paper_tilt(domain: PaperDomain, method: Method) -> Body:
 
 
 def _paper(domain: PaperDomain, method: Method) -> Float:
-    """V of the paper's objective, as densities 0 and 1."""
+    """(N, N, N) V of the paper's objective, as densities 0 and 1."""
     if method.solver == "adam":
         from printprep.paper.adam import solve_adam
 
@@ -107,5 +107,6 @@ def _body(
     lean_deg: float | None = None,
     reachable_deg: float | None = None,
 ) -> Body:
+    """A body from densities (N, N, N)."""
     outside = domain.solid | (weight > 0)
     return Body(weight, domain.solid, outside, domain.ground, lean_deg, reachable_deg)

@@ -1,4 +1,4 @@
-"""Which models are evaluated: a folder of them, or a catalogue that names them."""
+"""The models to evaluate: those of a folder, or of a catalogue that lists them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from printprep.mesh.read import SUFFIXES
 class Case:
     """One model.
 
-    name : the file's stem, the whole file name where two share a stem;  up : its axis that is up.
+    name : the file's stem, or the whole file name where two share a stem;  up : the axis that is
+    up.
     """
 
     name: str
@@ -27,9 +28,9 @@ class Case:
 
 @dataclass(frozen=True)
 class DataSet:
-    """Models under one label, which every table carries.
+    """Models under one label, for the tables.
 
-    label : the folder's or the catalogue's name, with the catalogue's set.
+    label : the name of the folder or of the catalogue, with the catalogue's set.
     """
 
     label: str
@@ -44,26 +45,28 @@ def data_set(
     only: Sequence[str] = (),
     limit: int | None = None,
 ) -> DataSet:
-    """The models of a folder, or of a catalogue.
+    """List the models of a folder, or of a catalogue.
 
     Parameters
     ----------
-    source : a folder, of which every mesh is taken in the order of names; or a CSV file with a
-        column ``file``, and if it likes ``up`` and ``set``.  A row's file is looked for beside the
+    source : a folder, whose meshes are taken in the order of their names; or a CSV file with a
+        column ``file``, and optional columns ``up`` and ``set``.  A row's file lies beside the
         catalogue, in the folder named by its set if it has one.
-    subset : of a catalogue, the rows whose ``set`` this is.
-    up : axis that is up, where no catalogue says.
-    only : names of models to keep;  limit : how many to keep of those.
+    subset : of a catalogue, the rows with this ``set``.
+    up : the axis that is up, where the catalogue gives none.
+    only : names of models to keep;  limit : how many of them.
 
     Raises
     ------
-    InputError : the source is missing or cannot be read as such, or holds no model.
-    UsageError : a subset of a folder, an unknown axis, a name in ``only`` that is not there.
+    InputError : the source does not exist, cannot be read, or holds no model.
+    UsageError : a subset of a folder, an unknown axis, or an unknown name in ``only``.
     """
     rotation(up)
     if source.is_dir():
         if subset is not None:
-            raise UsageError(f"--set {subset}: {source} is a folder.", "Name a catalogue instead.")
+            raise UsageError(
+                f"--set {subset}: {source} is a folder.", "Use a catalogue, or leave out --set."
+            )
         paths = [path for path in source.iterdir() if path.suffix.lower() in SUFFIXES]
         rows = [(path, up) for path in sorted(paths)]
         label = source.resolve().name
@@ -72,8 +75,8 @@ def data_set(
         label = source.stem if subset is None else f"{source.stem}, set {subset}"
     if not rows:
         raise InputError(
-            f"{source} names no model{'' if subset is None else f' of the set {subset}'}.",
-            f"Models are files with one of {', '.join(SUFFIXES)}.",
+            f"{source} holds no model{'' if subset is None else f' of the set {subset}'}.",
+            f"Models are files of type {', '.join(SUFFIXES)}.",
         )
     stems = Counter(path.stem for path, _ in rows)
     cases = [
@@ -83,13 +86,16 @@ def data_set(
 
 
 def _catalogue(path: Path, subset: str | None, up: str) -> list[tuple[Path, str]]:
+    """The files that a catalogue lists, each with its axis that is up."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as handle:
             rows = list(csv.DictReader(handle))
     except FileNotFoundError as error:
-        raise InputError(f"{path} does not exist.", "Name a folder or a catalogue.") from error
+        raise InputError(f"{path} does not exist.", "Use a folder or a catalogue.") from error
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path} cannot be read as CSV: {error}.") from error
+        raise InputError(
+            f"{path} cannot be read as CSV: {error}.", "Save the catalogue as CSV in UTF-8."
+        ) from error
     found = []
     for number, row in enumerate(rows, start=2):
         group = row.get("set") or ""
@@ -98,7 +104,7 @@ def _catalogue(path: Path, subset: str | None, up: str) -> list[tuple[Path, str]
         name = row.get("file")
         if not name:
             raise InputError(
-                f"{path}, line {number} names no file.", "A catalogue needs a column `file`."
+                f"{path}, line {number} has no file.", "A catalogue needs a column `file`."
             )
         axis = row.get("up") or up
         rotation(axis)
@@ -107,13 +113,14 @@ def _catalogue(path: Path, subset: str | None, up: str) -> list[tuple[Path, str]
 
 
 def _chosen(cases: list[Case], only: Sequence[str], limit: int | None) -> tuple[Case, ...]:
+    """The cases of these names, up to the limit."""
     missing = sorted(set(only) - {case.name for case in cases})
     if missing:
         raise UsageError(
-            f"--only {missing[0]}: there is no model of that name.",
-            "Names are those of the files, without the suffix.",
+            f"--only {missing[0]}: no model has that name.",
+            "Use names of files, without the suffix.",
         )
     if limit is not None and limit < 1:
-        raise UsageError(f"--limit {limit}: give a whole number of at least 1.")
+        raise UsageError(f"--limit {limit} is too small.", "Use a whole number of at least 1.")
     kept = [case for case in cases if not only or case.name in only]
     return tuple(kept[:limit])

@@ -1,9 +1,9 @@
-"""A body of voxels let go on a bed: the paper's judgement of what stands.
+"""Release a body of voxels on a bed and simulate it: the paper's test of what stands.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298: MuJoCo, a free body on a plane,
-ten seconds in steps of a millisecond, inertia of the hollow body, stands when it has turned by less
-than 20° in the end.  What collides is the convex hull of the voxels, and the object is as large as
-the paper's numbers say in metres: its longest side is 1 m.
+ten seconds in steps of a millisecond, inertia of the hollow body; it stands when its final rotation
+is below 20°.  The convex hull of the voxels collides.  The object has the size of the paper's
+numbers in metres: its longest side is 1 m.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-MM = 1000.0  # of the longest side
+MM = 1000.0  # longest side
 _CUBE = np.stack(np.meshgrid(*[[0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def final_rotation_deg(weight: Float, ground: int, *, seconds: float = SECONDS) -> float:
-    """How far a body of voxels has turned after being let go on a level bed.
+    """Final rotation of a body of voxels after its release on a level bed, in degrees.
 
     weight : (nx, ny, nz) densities;  ground : index of the layer that touches the bed.
     """
@@ -37,7 +37,10 @@ def final_rotation_deg(weight: Float, ground: int, *, seconds: float = SECONDS) 
 
 
 def scene_of_voxels(weight: Float, ground: int) -> Scene:
-    """The body as the simulation takes it: hull, centre, inertia, in radii of gyration."""
+    """The scene of a body for the simulation: hull, centre, inertia, in radii of gyration.
+
+    weight : (nx, ny, nz) densities;  ground : index of the layer that touches the bed.
+    """
     pitch_mm = MM / max(weight.shape)
     mass, *first = moments(weight, ground)
     centre = np.array(first) / mass
@@ -54,10 +57,13 @@ def scene_of_voxels(weight: Float, ground: int) -> Scene:
 
 
 def _hull(material: NDArray[np.bool_], ground: int) -> Float:
-    """(n, 3) corners of the convex hull of voxels, those on the bed all of the support polygon."""
+    """(n, 3) voxels, corners of the convex hull; on the bed those of the support polygon.
+
+    material : (nx, ny, nz) bool.
+    """
     from scipy.spatial import ConvexHull
 
-    # Along every vertical line only the ends can be corners.
+    # Only the ends of vertical lines can be corners.
     columns = np.argwhere(material.any(axis=2))
     lines = material[tuple(columns.T)]
     low = lines.argmax(axis=1)

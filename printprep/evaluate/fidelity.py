@@ -1,9 +1,9 @@
-"""How close two surfaces are: F-score and Chamfer distance, as the paper measures them.
+"""Measure how close two surfaces are: F-score and Chamfer distance, as in the paper.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code:
-10,000 points on each surface, the one aligned to the other by ICP, τ = 0.05 in the unit cube; the
+10,000 points on each surface, one aligned to the other by ICP, τ = 0.05 in the unit cube; the
 Chamfer distance is the mean of the two mean distances, not squared.  Two samples of one surface of
-area A are still about ½ √(A / 10,000) apart: the floor of any such figure.
+area A are about ½ √(A / 10,000) apart: no such figure is lower.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ _ICP_STILL = 1e-7  # stop when the mean squared distance falls by less than this
 
 @dataclass(frozen=True)
 class Fidelity:
-    """f_score : in [0, 1], 1 best;  chamfer : in lengths of the unit cube, 0 best."""
+    """Closeness of two surfaces.
+
+    f_score : in [0, 1], 1 best;  chamfer : in lengths of the unit cube, 0 best.
+    """
 
     f_score: float
     chamfer: float
@@ -33,14 +36,14 @@ class Fidelity:
 def fidelity(
     result: tuple[Float, Int], target: tuple[Float, Int], *, seed: int = 0, samples: int = SAMPLES
 ) -> Fidelity:
-    """Compare two surfaces, each vertices (v, 3) and faces (f, 3); seeded, so always the same."""
+    """Compare two surfaces, each vertices (v, 3) and faces (f, 3); the seed makes it repeatable."""
     points = sample_surface(*result, samples, seed)
     others = sample_surface(*target, samples, seed + 1)
     return compare(aligned(points, others), others)
 
 
 def compare(points: Float, others: Float, tau: float = TAU) -> Fidelity:
-    """F-score at τ and Chamfer distance of two sets of points (n, 3), as they lie."""
+    """F-score at τ and Chamfer distance of two sets of points (n, 3), without alignment."""
     from scipy.spatial import cKDTree
 
     there, _ = cKDTree(others).query(points)
@@ -52,7 +55,10 @@ def compare(points: Float, others: Float, tau: float = TAU) -> Fidelity:
 
 
 def sample_surface(vertices: Float, faces: Int, count: int, seed: int) -> Float:
-    """(count, 3) points spread evenly by chance over triangles."""
+    """(count, 3) random points, uniform over triangles.
+
+    vertices : (v, 3);  faces : (f, 3).
+    """
     generator = np.random.default_rng(seed)
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -67,7 +73,10 @@ def sample_surface(vertices: Float, faces: Int, count: int, seed: int) -> Float:
 
 
 def aligned(points: Float, others: Float) -> Float:
-    """``points`` moved rigidly onto ``others`` by iterated closest points (Besl & McKay, 1992)."""
+    """Move points (n, 3) rigidly onto others (m, 3) by iterated closest points.
+
+    (Besl & McKay, 1992.)  Returns (n, 3).
+    """
     from scipy.spatial import cKDTree
 
     tree = cKDTree(others)
@@ -84,7 +93,10 @@ def aligned(points: Float, others: Float) -> Float:
 
 
 def _onto(points: Float, partners: Float) -> Float:
-    """Least squares over rotations and shifts (Kabsch, 1976)."""
+    """Move points (n, 3) onto their partners (n, 3), by least squares over rotations and shifts.
+
+    (Kabsch, 1976.)  Returns (n, 3).
+    """
     middle, other = points.mean(axis=0), partners.mean(axis=0)
     left, _, right = np.linalg.svd((points - middle).T @ (partners - other))
     turn = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right

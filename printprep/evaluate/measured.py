@@ -1,7 +1,7 @@
-"""What is measured of each method's result on each model, and where it is kept.
+"""Measure each method's result on each model, and keep it in a file.
 
-A result lives in a file of its own beside the settings it depends on; one that is there with the
-same settings is not computed again, so an evaluation goes on where it was interrupted.
+Each result has a file of its own, with the settings it depends on.  A result with the same settings
+is not computed again, so an interrupted evaluation goes on where it stopped.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ from printprep.version import __version__
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FORMAT = 1  # of a result's file; another one is not read
-_DIGITS = 9  # kept: enough for any table, and free of the last bits of a sum
+FORMAT = 1  # of a result's file; other formats are not read
+_DIGITS = 9  # of each figure: enough for any table, without the last bits of a sum
 
 
 @dataclass(frozen=True)
 class Measured:
     """One method on one model; the solid is O, the model's voxels without holes.
 
-    mass : Mas, in the unit cube at unit density;  mass_ratio : to the solid's.
+    mass : Mas, in the unit cube at unit density;  mass_ratio : to the mass of the solid.
     stands, rotation_deg : after ten simulated seconds;  tilt_deg : computed, negative where the
     body falls by itself;  f_score, chamfer : of its outside against the input.
-    lean_deg : asked for, None for a method without;  reachable_deg : the largest there is where
-    that is less.
+    lean_deg : the lean asked for, None for a method without one;  reachable_deg : the largest lean
+    of any filling where that is less.
     seconds : for the solution alone; the only figure that differs from run to run.
     """
 
@@ -65,19 +65,19 @@ class Measured:
 def evaluate_case(
     case: Case, chosen: Sequence[Method], folder: Path, voxels: Voxels
 ) -> tuple[Measured, ...]:
-    """All methods on one model, each read from ``folder`` where it is there, else put there.
+    """Measure all methods on one model; each result is read from ``folder``, or written there.
 
     Raises
     ------
     InputError, GeometryError : the model cannot be read, or encloses no voxel.
-    OutputError : the folder refuses.
+    OutputError : the folder cannot be written to.
     """
     described = [_settings(case, method, voxels) for method in chosen]
     files = [folder / case.name / f"{method.name}.json" for method in chosen]
     kept = [_kept(file, settings) for file, settings in zip(files, described, strict=True)]
     if all(kept):
         return tuple(one for one in kept if one is not None)
-    bench: dict[int, _Bench] = {}
+    bench: dict[int, _Bench] = {}  # by resolution
     found = []
     for method, settings, file, known in zip(chosen, described, files, kept, strict=True):
         if known is None:
@@ -91,13 +91,14 @@ def evaluate_case(
 
 
 class _Bench:
-    """One model's picture, and the fidelity of every outside that came up."""
+    """One model's voxels, and the fidelity of every outside measured so far."""
 
     def __init__(self, picture: Picture) -> None:
         self._picture = picture
         self._known: dict[bytes, Fidelity] = {}
 
     def measure(self, model: str, method: Method) -> Measured:
+        """Run a method, and measure its result."""
         from printprep.evaluate.drop import final_rotation_deg
 
         _warm_up(method)
@@ -123,6 +124,7 @@ class _Bench:
         )
 
     def _fidelity(self, outside: NDArray[np.bool_]) -> Fidelity:
+        """The fidelity of an outside (N, N, N) bool to the model."""
         key = np.packbits(outside).tobytes()
         if key not in self._known:
             surface = surface_of(outside)
@@ -135,7 +137,7 @@ _warm: set[tuple[str, str]] = set()
 
 
 def _warm_up(method: Method) -> None:
-    """Import what a method needs before its clock runs, once a process."""
+    """Import what a method needs before its time counts, once in a process."""
     if (method.kind, method.solver) not in _warm:
         _warm.add((method.kind, method.solver))
         short = replace(method, settings=replace(method.settings, resolution=6, steps=1))
@@ -149,8 +151,9 @@ def _rounded(value: float) -> float:
 
 
 def _settings(case: Case, method: Method, voxels: Voxels) -> dict[str, Any]:
+    """All that a result depends on, as JSON holds it."""
     data = b""
-    with suppress(OSError):  # what cannot be read is reported where it is read as a mesh
+    with suppress(OSError):  # reading it as a mesh reports the error
         data = case.path.read_bytes()
     settings = {
         "format": FORMAT,
@@ -165,7 +168,7 @@ def _settings(case: Case, method: Method, voxels: Voxels) -> dict[str, Any]:
 
 
 def _kept(file: Path, settings: dict[str, Any]) -> Measured | None:
-    """The result in a file, if it is whole and of these settings."""
+    """The result in a file, or None when it is damaged or has other settings."""
     try:
         stored = json.loads(file.read_text(encoding="utf-8"))
     except (FileNotFoundError, json.JSONDecodeError, UnicodeDecodeError):
@@ -176,17 +179,18 @@ def _kept(file: Path, settings: dict[str, Any]) -> Measured | None:
 
 
 def _keep(file: Path, settings: dict[str, Any], result: Measured) -> None:
+    """Write a result with its settings."""
     make_folder(file.parent)
     text = json.dumps({"settings": settings, "result": asdict(result)}, indent=1, allow_nan=False)
     write_atomically(file, (text + "\n").encode("utf-8"))
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those above it; OutputError where that is not possible."""
+    """Create a folder and those above it; OutputError when that fails."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(
-            f"{path} cannot be made: {error.strerror or type(error).__name__}.",
-            "Choose another --output.",
+            f"{path} cannot be created: {error.strerror or type(error).__name__}.",
+            "Choose another folder with --output.",
         ) from error

@@ -1,6 +1,6 @@
-"""The methods that are compared, and the paper's ablations, by name.
+"""The methods to compare, and the paper's ablations, by name.
 
-Solid, shell, and the paper's objective with its switches are the paper's; lean is ours.
+Solid, shell, and the paper's objective with its switches come from the paper; lean is printprep's.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ LEAN_DEG = 10.0
 
 @dataclass(frozen=True)
 class Method:
-    """One row of a table.
+    """One method: a row of a table.
 
-    title : as the tables say it;  lean_deg : of the two leans.
-    settings : the paper's parameters, of which the other kinds use N, ε, and whether there is a
-    base B and how far it reaches.
+    title : in the tables;  lean_deg : for the kinds "lean" and "lean-full-base".
+    settings : the paper's parameters; the other kinds use N, ε, and whether B exists and how far it
+    reaches.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Method:
     solver: Solver = "plane"
 
     def described(self) -> dict[str, Any]:
-        """Everything its result depends on, and nothing else, as JSON can hold it."""
+        """All that its result depends on, and nothing else, as JSON holds it."""
         facts: dict[str, Any] = {"kind": self.kind, "settings": asdict(self.settings)}
         if self.kind in ("lean", "lean-full-base"):
             facts["lean_deg"] = self.lean_deg
@@ -79,7 +79,7 @@ _ABLATIONS = (
 )
 
 MAIN = tuple(method.name for method in _MAIN)
-# What an ablation is compared with, and the one that is a method of its own.
+# The ablations, with the full method they are compared with, and the method without B.
 ABLATIONS = ("paper", "paper-no-base", *(method.name for method in _ABLATIONS))
 
 
@@ -92,23 +92,25 @@ def methods(
     lean_deg: float = LEAN_DEG,
     base_reach: Reach = "below",
 ) -> tuple[Method, ...]:
-    """The methods of these names, then, if asked for, the ablations that are not among them.
+    """The methods of these names, then, with ``ablations``, those that are not among them.
 
-    base_reach : of B, see `PaperSettings`; but that of "paper-wide-base" is its own.
+    base_reach : of B, see `PaperSettings`; "paper-wide-base" has its own.
 
-    Raises UsageError for a name that is not known, none at all, or a lean outside [0, 90).
+    Raises UsageError for an unknown name, for no name, or for a lean outside [0, 90).
     """
     known = {method.name: method for method in (*_MAIN, *_ABLATIONS)}
     for name in names:
         if name not in known:
             raise UsageError(
-                f"--methods {name}: there is no such method.", f"There are {', '.join(known)}."
+                f"--methods {name}: this method does not exist.", f"Choose from {', '.join(known)}."
             )
     if not 0 <= lean_deg < 90:
-        raise UsageError(f"--lean {lean_deg:g} is not in [0, 90) degrees.")
+        raise UsageError(
+            f"--lean {lean_deg:g} is out of range.", "Use 0° or more, and less than 90°."
+        )
     chosen = list(dict.fromkeys([*names, *(ABLATIONS if ablations else ())]))
     if not chosen:
-        raise UsageError("No method is named.", f"There are {', '.join(known)}.")
+        raise UsageError("--methods names no method.", f"Choose from {', '.join(known)}.")
     return tuple(
         replace(
             known[name],

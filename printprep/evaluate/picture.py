@@ -1,13 +1,13 @@
-"""A model in the paper's picture: scaled into the unit cube, and its voxels.
+"""Voxelize a model as the paper does: scaled into the unit cube.
 
 The frame is the generator's: the bounding box is centred on the origin and its longest side is 1,
 so the object lies in [-0.5, 0.5]³ with z up; voxel (i, j, k) of N³ is centred at
 (index + 0.5) / N − 0.5.
 
-Voxels are those of "surface": all that the surface passes through, which are the shell, and what
-they enclose.  That is what a generator's sparse structure is, and what the authors' code freezes
-and fills.  Or those of "centre": the voxels whose centre is inside, with the outermost layer for
-the shell, as the paper's text has it; a thinner shell, and never more than the object.
+"surface" takes all voxels that the surface passes through, as the shell, and what they enclose.  A
+generator's sparse structure is such a set, and the authors' code freezes and fills it.  "centre"
+takes the voxels whose centre is inside, with the outermost layer as the shell, as the paper's text
+has it: the shell is thinner, and nothing lies outside the object.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code.
 """
@@ -34,20 +34,21 @@ if TYPE_CHECKING:
 
 Voxels = Literal["surface", "centre"]
 
-# Columns must not meet an edge or a corner, nor faces lie between two voxels; this has no small
-# common measure with any grid.
+# Columns must not meet an edge or a corner, and no face may lie between two voxels: these shifts
+# are incommensurable with any grid.
 _JITTER = np.array([2.0**0.5, 3.0**0.5, 5.0**0.5]) * 1e-7
-# The outermost faces lie this share inside the unit cube, so that they touch its own voxels.
+# The outermost faces lie this share inside the unit cube, so that they touch the cube's own voxels.
 _WITHIN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What there is to hollow, and what to compare with.
+    """A model's voxels, and its surface to compare with.
 
-    vertices : (v, 3) float64 in [-0.5, 0.5]³;  faces : (f, 3) int64, seen from outside.
-    occupied : (N, N, N) bool, axis order x, y, z;  frozen : the same, those of them that belong
-    to the shell whether they are outermost or not.
+    vertices : (v, 3) float64 in [-0.5, 0.5]³;  faces : (f, 3) int64, counter-clockwise seen from
+    outside.
+    occupied : (N, N, N) bool, axis order x, y, z;  frozen : (N, N, N) bool, the occupied voxels
+    that belong to the shell, outermost or not.
     """
 
     vertices: Float
@@ -73,7 +74,7 @@ def picture_of(path: Path, up: str, resolution: int, voxels: Voxels = "surface")
     if not inside.any():
         raise GeometryError(
             f"{path} encloses none of the {resolution}³ voxel centres.",
-            "It is flat, thinner than a voxel, or not closed.",
+            "Use a closed model that is thicker than a voxel.",
         )
     if voxels == "centre":
         return Picture(vertices, faces, inside, np.zeros_like(inside))
@@ -83,7 +84,10 @@ def picture_of(path: Path, up: str, resolution: int, voxels: Voxels = "surface")
 
 
 def inside_voxels(vertices: Float, faces: Int, resolution: int) -> NDArray[np.bool_]:
-    """(N, N, N) bool: voxels of [-0.5, 0.5]³ about whose centre the winding number exceeds ½."""
+    """(N, N, N) bool: voxels of [-0.5, 0.5]³ with a winding number above ½ at their centre.
+
+    vertices : (v, 3);  faces : (f, 3).
+    """
     centres = (np.arange(resolution) + 0.5) / resolution - 0.5
     x, y = np.meshgrid(centres, centres, indexing="ij")
     columns = np.column_stack([x.ravel(), y.ravel()]) + _JITTER[:2]

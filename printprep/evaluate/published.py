@@ -1,6 +1,7 @@
-"""What the paper says of itself, for the tables to set beside ours.
+"""The paper's own figures, for the tables to show beside printprep's.
 
-Only figures with a source; its models are generated ones of its own, not those evaluated here.
+Only figures with a source.  The paper's models are its own generated ones, not those evaluated
+here.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ SOURCE = "Dang et al., DensiCrafter, AAAI 2026, arXiv 2511.09298"
 
 @dataclass(frozen=True)
 class Published:
-    """One row: which method, on what, and the figures as the paper gives them (None: not known).
+    """One row: a method, its data set, and the figures as the paper gives them (None: unknown).
 
-    method : the name of ours it corresponds to;  table : of ours;  where : in the paper.
+    method : the name here of the same method;  table : the table here;  where : in the paper.
     """
 
     table: Literal["methods", "ablations"]

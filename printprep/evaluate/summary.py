@@ -1,4 +1,4 @@
-"""Means over the models, and the comparisons that the methods are made for."""
+"""Means of each method over the models, and comparisons of two methods."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 if TYPE_CHECKING:
     from printprep.evaluate.measured import Measured
 
-# Of the mass: what rounding in a written result may hide.
+# Share of the mass that rounding in a written result may hide.
 _SAME = 1e-7
 
 
 @dataclass(frozen=True)
 class Summary:
-    """One method over all models it was run on; means but for the counts and the share.
+    """One method over all its models; means except for the counts and the share.
 
     out_of_reach : models on which no filling reaches the lean asked for.
     """
@@ -37,11 +37,11 @@ class Summary:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One method against another, on the models both were run on.
+    """One method against another, on the models of both.
 
-    lighter_percent : by how much the mean mass ratio is lower;  stable_points : share of stands,
-    difference in percentage points;  heavier : the models on which it weighs more;
-    fell, rose : models that stand with the other only, and with this only.
+    lighter_percent : by how much the mean mass ratio is lower;  stable_points : difference of the
+    share that stands, in percentage points;  heavier : the models on which it weighs more;
+    fell, rose : the models that stand only with the other, and only with this.
     """
 
     method: str
@@ -79,7 +79,7 @@ def summary(method: str, results: Sequence[Measured]) -> Summary | None:
 
 
 def compare(method: str, other: str, results: Sequence[Measured]) -> Comparison | None:
-    """One method against another; None when no model has both."""
+    """Compare one method with another; None when no model has both."""
     ours = {row.model: row for row in results if row.method == method}
     pairs = [(ours[row.model], row) for row in results if row.method == other and row.model in ours]
     if not pairs:

@@ -1,4 +1,4 @@
-"""The tables: CSV per model and method, JSON of everything, Markdown to read."""
+"""Write the tables: CSV for each model and method, JSON of everything, Markdown to read."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _PAIRS = (
 
 
 def write_tables(evaluation: Evaluation, folder: Path) -> tuple[Path, ...]:
-    """Write table.csv, results.json and tables.md into ``folder``, replacing what is there."""
+    """Write table.csv, results.json and tables.md into ``folder``, over older ones."""
     contents = {
         "table.csv": csv_text(evaluation.results),
         "results.json": to_text(as_json(evaluation)) + "\n",
@@ -46,7 +46,7 @@ def write_tables(evaluation: Evaluation, folder: Path) -> tuple[Path, ...]:
 
 
 def csv_text(results: Sequence[Measured]) -> str:
-    """A line for every model and method; empty where there is nothing to say."""
+    """CSV with a line for every model and method; a cell without a value is empty."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     names = [field.name for field in fields(Measured)]
@@ -58,7 +58,7 @@ def csv_text(results: Sequence[Measured]) -> str:
 
 
 def as_json(evaluation: Evaluation) -> dict[str, Any]:
-    """Everything, by the names of the types it comes from."""
+    """Everything as JSON, by the names of the fields."""
     compared = [compare(mine, other, evaluation.results) for mine, other in _PAIRS]
     return {
         "data_set": evaluation.data_set.label,
@@ -74,7 +74,7 @@ def as_json(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def markdown(evaluation: Evaluation) -> str:
-    """The tables to read: methods, ablations if there are any, comparisons, failures."""
+    """The tables as Markdown: methods, ablations if any, comparisons, failures."""
     label, count = evaluation.data_set.label, len(evaluation.data_set.cases)
     found = {method.name: (method, one) for method, one in _summaries(evaluation)}
     resolution = evaluation.methods[0].settings.resolution
@@ -82,7 +82,7 @@ def markdown(evaluation: Evaluation) -> str:
     wide = "up to and including" if reaches == {"within"} else "below"
     lines = [
         f"Data set: {label} ({count} models); {resolution}³ voxels, {_VOXELS[evaluation.voxels]}; "
-        f"B at distances {wide} ε. The paper's figures are of its own models, not of these: "
+        f"B at distances {wide} ε. The paper's figures come from its own models, not these: "
         f"{SOURCE}.",
         "",
     ]
@@ -131,14 +131,14 @@ def _compared(evaluation: Evaluation) -> Iterator[str]:
         one = compare(mine, other, evaluation.results)
         if one is None:
             continue
-        said = (
+        text = (
             f"- `{mine}` against `{other}` on {one.models} models: mean mass ratio "
             f"{one.lighter_percent:.1f} % lower, stands {one.stable_points:+.1f} points, heavier "
             f"on {len(one.heavier)}"
         )
         if one.heavier:
-            said += f" ({', '.join(one.heavier)})"
+            text += f" ({', '.join(one.heavier)})"
         for what, names in (("falls", one.fell), ("stands", one.rose)):
             if names:
-                said += f"; {what} where the other does not: {', '.join(names)}"
-        yield said + "."
+                text += f"; {what} where the other does not: {', '.join(names)}"
+        yield text + "."

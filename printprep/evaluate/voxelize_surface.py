@@ -1,7 +1,7 @@
-"""Which voxels a surface passes through: exactly, by separating axes.
+"""Find the voxels that a surface passes through, exactly, by separating axes.
 
-Two convex bodies are apart exactly when some axis among their faces' normals and the products of
-their edges separates them; for a triangle and a cube that is 13 axes (Akenine-Möller, "Fast 3D
+Two convex bodies are apart exactly when an axis among their faces' normals and the cross products
+of their edges separates them; for a triangle and a cube these are 13 axes (Akenine-Möller, "Fast 3D
 triangle-box overlap testing", 2001).
 """
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-_PAIRS = 400_000  # of a triangle and a voxel, looked at together
+_PAIRS = 400_000  # of a triangle and a voxel, tested together
 
 
 def voxelize_surface(corners: Float, resolution: int) -> NDArray[np.bool_]:
     """(N, N, N) bool: the voxels that triangles pass through or touch.
 
     corners : (m, 3, 3) triangles in voxels: voxel (i, j, k) is [i, i+1] × [j, j+1] × [k, k+1].
-        What lies outside the grid is left out.
+        Triangles outside the grid do not count.
     """
     found = np.zeros((resolution,) * 3, dtype=bool)
     low = np.floor(corners.min(axis=1)).astype(np.int64).clip(0)
     high = np.floor(corners.max(axis=1)).astype(np.int64).clip(max=resolution - 1)
     span = (high - low + 1).clip(0)
     for triangle, voxel in _candidates(low, span):
-        # The triangles' boxes and the voxels overlap: three of the axes are done.
+        # The triangles' boxes and the voxels overlap: that settles three of the axes.
         about = corners[triangle] - (voxel[:, None] + 0.5)
         meets = _meets(about)
         found[tuple(voxel[meets].T)] = True
@@ -40,7 +40,10 @@ def voxelize_surface(corners: Float, resolution: int) -> NDArray[np.bool_]:
 
 
 def _candidates(low: Int, span: Int) -> Iterator[tuple[Int, Int]]:
-    """(n,) triangles and (n, 3) voxels of their boxes, some at a time."""
+    """(n,) triangles and (n, 3) voxels of their boxes, in chunks.
+
+    low : (m, 3) lowest voxel of each triangle's box;  span : (m, 3) voxels along each axis.
+    """
     count = span.prod(axis=1)
     until = np.cumsum(count)
     begin = 0
@@ -56,7 +59,7 @@ def _candidates(low: Int, span: Int) -> Iterator[tuple[Int, Int]]:
 
 
 def _meets(about: Float) -> NDArray[np.bool_]:
-    """(n,) whether triangles (n, 3, 3) meet the cube of edge 1 about the origin."""
+    """(n,) bool, whether triangles (n, 3, 3) meet the cube of edge 1 about the origin."""
     edges = np.roll(about, -1, axis=1) - about
     normal = np.cross(edges[:, 0], edges[:, 1])
     height = np.abs(np.einsum("ni,ni->n", normal, about[:, 0]))

@@ -1,1 +1,1 @@
-"""G-code of printers that melt filament: read, weighed, balanced."""
+"""Reads G-code of filament printers: the mass, balance and contact of what it prints."""

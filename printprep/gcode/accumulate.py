@@ -1,7 +1,7 @@
 """Adds up what the pieces of a G-code deposit, by feature, extruder and unit of filament.
 
-What is left out, and how much filament weighs, is decided at the end: slicers write the filament's
-figures behind the moves.
+The features to leave out and the weight of the filament apply at the end: slicers write the
+figures of the filament after the moves.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 
 from printprep.errors import InputError
 from printprep.gcode.balance import balance_of
+from printprep.gcode.bead_sizes import BeadSizes
 from printprep.gcode.bodies import Bodies
+from printprep.gcode.cavities import Cavities
 from printprep.gcode.features import CUSTOM, SUPPORT, UNLABELLED
 from printprep.gcode.filament import Filament, Key
 from printprep.gcode.first_layer import SAME_LAYER_MM, LowestBeads
-from printprep.gcode.heights import Heights
-from printprep.gcode.inside import Cavities
 from printprep.gcode.lexer import read_rows
-from printprep.gcode.modal_state import Listener, State
+from printprep.gcode.modal_state import ModalState, StateTracker
 from printprep.gcode.moments import COLUMNS, inertia_about_centre, moments_of, sums_by
 from printprep.gcode.paths import Stretches, Walker
 from printprep.gcode.printed import Printed
@@ -33,22 +33,26 @@ if TYPE_CHECKING:
 
 
 class Accumulator:
-    """Sums over the pieces heard so far."""
+    """Sums over the pieces of the file so far.
+
+    cavities : solids that should stay empty;  bodies : solids that do not touch; both in the
+    coordinates of the G-code.  Filament is in the unit of E until ``result``.
+    """
 
     def __init__(
         self,
-        listener: Listener,
+        tracker: StateTracker,
         name: str,
         cavities: Sequence[Manifold],
         bodies: Sequence[Manifold],
     ) -> None:
-        self._listener = listener
+        self._tracker = tracker
         self._name = name
         self._cavities = Cavities(cavities) if cavities else None
         self._bodies = Bodies(bodies) if len(bodies) > 1 else None
         self._count = len(bodies)
         self._walker = Walker()
-        self._heights = Heights(listener)
+        self._bead_sizes = BeadSizes(tracker)
         self._line = 1
         self._motion = -1
         self._keys: dict[Key, int] = {}
@@ -60,38 +64,39 @@ class Accumulator:
         self._at: dict[Key, tuple[float, float, float]] = {}
 
     def add(self, piece: bytes) -> None:
-        """Take in the next piece, which ends with a line's end."""
+        """Add the next piece of the file, which ends with the end of a line."""
         rows = read_rows(piece, self._name, self._line, self._motion)
         self._line += rows.lines
         self._motion = rows.motion
-        states, changed_at, became = self._listener.feed_all(rows.others)
+        states, changed_at, became = self._tracker.feed_all(rows.others)
         changes = np.searchsorted(np.array(changed_at, dtype=np.int64), rows.line)
         state_of_row = np.array([0, *became], dtype=np.int64)[changes]
         made = self._walker.walk(rows, state_of_row, states)
         if len(made.filament):
             self._deposit(made, states)
 
-    def _deposit(self, made: Stretches, states: Sequence[State]) -> None:
+    def _deposit(self, made: Stretches, states: Sequence[ModalState]) -> None:
         group = self._groups(made, states)
-        self._make_room()
-        width, height = self._heights.bead(made, states)
+        self._add_groups()
+        width, height = self._bead_sizes.of(made, states)
         axis_start, axis_end = made.start_mm.copy(), made.end_mm.copy()
         axis_start[:, 2] -= height / 2
         axis_end[:, 2] -= height / 2
         wide = np.nan_to_num(width)
         moments = moments_of(axis_start, axis_end, made.filament, wide, height)
         self._sums += sums_by(group, moments, len(self._sums))
-        self._reach(group, axis_start, axis_end, wide, height)
+        self._widen_bounds(group, axis_start, axis_end, wide, height)
         top = made.end_mm[:, 2]
         beads = np.column_stack([made.start_mm[:, :2], made.end_mm[:, :2], top, width, height])
-        # Where no width is said it follows from the filament, whose diameter is known at the end
+        # A width that the file does not give follows from the filament, whose diameter is known at
+        # the end: until then the column holds minus the filament per mm.
         length = np.linalg.norm(beads[:, 2:4] - beads[:, :2], axis=1)
-        unsaid = np.isnan(width)
-        beads[unsaid, 5] = -(made.filament / np.maximum(length, 1e-9))[unsaid]
+        missing = np.isnan(width)
+        beads[missing, 5] = -(made.filament / np.maximum(length, 1e-9))[missing]
         for index in np.unique(group):
-            self._lowest[index].meet(beads[group == index])
+            self._lowest[index].add(beads[group == index])
         if self._cavities is not None:
-            deeper = np.where(unsaid, height, wide) / 2
+            deeper = np.where(missing, height, wide) / 2
             share = self._cavities.share_inside(axis_start, axis_end, deeper)
             self._inside += np.bincount(group, share * made.filament, minlength=len(self._sums))
             keys = list(self._keys)
@@ -100,7 +105,10 @@ class Accumulator:
                 x, y, z = (axis_start[first] + axis_end[first]) / 2
                 self._at.setdefault(keys[index], (float(x), float(y), float(z)))
 
-    def _reach(self, group: Int, start: Float, end: Float, width: Float, height: Float) -> None:
+    def _widen_bounds(
+        self, group: Int, start: Float, end: Float, width: Float, height: Float
+    ) -> None:
+        """Widen the bounds of groups by beads: group (n,), axes (n, 3) mm, widths, heights (n,)."""
         half = np.column_stack([width, width, height]) / 2
         low, high = np.minimum(start, end) - half, np.maximum(start, end) + half
         for index in np.unique(group):
@@ -108,8 +116,8 @@ class Accumulator:
             self._low[index] = np.minimum(self._low[index], low[mine].min(axis=0))
             self._high[index] = np.maximum(self._high[index], high[mine].max(axis=0))
 
-    def _groups(self, made: Stretches, states: Sequence[State]) -> Int:
-        """(n,) index of each stretch's sums."""
+    def _groups(self, made: Stretches, states: Sequence[ModalState]) -> Int:
+        """(n,) index of the sums that each stretch belongs to."""
         if self._bodies is None:
             return np.array([self._group(state, 0) for state in states])[made.state]
         body = self._bodies.owner((made.start_mm + made.end_mm) / 2)
@@ -117,11 +125,12 @@ class Accumulator:
         groups = [self._group(states[state], each) for state, each in pairs.T.tolist()]
         return np.array(groups)[of.reshape(-1)]
 
-    def _group(self, state: State, body: int) -> int:
+    def _group(self, state: ModalState, body: int) -> int:
         key = Key(state.feature, state.tool, state.volumetric, body)
         return self._keys.setdefault(key, len(self._keys))
 
-    def _make_room(self) -> None:
+    def _add_groups(self) -> None:
+        """Start the sums of keys that are new."""
         more = len(self._keys) - len(self._sums)
         self._sums = np.vstack([self._sums, np.zeros((more, COLUMNS))])
         self._inside = np.concatenate([self._inside, np.zeros(more)])
@@ -135,8 +144,8 @@ class Accumulator:
         diameter_mm: float | None,
         density_g_cm3: float | None,
     ) -> Printed:
-        """The whole, once every piece was added.  Raises InputError where nothing is printed."""
-        filament = Filament(self._listener, diameter_mm, density_g_cm3)
+        """The whole print, after the last piece.  Raises InputError where it prints nothing."""
+        filament = Filament(self._tracker, diameter_mm, density_g_cm3)
         keys = [self._feature(key) for key in self._keys]
         volumes = np.array([filament.mm3(key) for key in keys])
         grams = np.array([filament.g_cm3(key) for key in keys]) / 1000
@@ -145,8 +154,8 @@ class Accumulator:
         ]
         if not kept:
             raise InputError(
-                f"{self._name}: prints nothing that stays",
-                "is it G-code for a printer that melts filament?",
+                f"{self._name} prints no part of a model.",
+                "Check that it is G-code for a filament printer.",
             )
         in_mm3 = self._sums * volumes[:, None] if len(keys) else self._sums
         in_g = in_mm3 * grams[:, None]
@@ -155,7 +164,7 @@ class Accumulator:
         bed = float((beads[:, 4] - beads[:, 6]).min())
         balance = balance_of(whole, beads, bed)
         if balance.tilt_deg is None:
-            raise InputError(f"{self._name}: its first layer is too small to stand on")
+            raise InputError(f"{self._name} has a first layer that is too small to stand on.")
         bodies = []
         for body in range(self._count):
             own = [i for i in kept if keys[i].body == body]
@@ -177,7 +186,7 @@ class Accumulator:
             feature_volume_mm3=_by_feature(keys, in_mm3[:, 0]),
             left_out=tuple(feature for feature in by_feature if feature in left_out),
             bounds_mm=np.stack([self._low[kept].min(axis=0), self._high[kept].max(axis=0)]),
-            objects=tuple(sorted(self._listener.objects)),
+            objects=tuple(sorted(self._tracker.objects)),
             filament_mm3=float(
                 sum(in_mm3[i, 0] for i, key in enumerate(keys) if key.feature != CUSTOM)
             ),
@@ -185,32 +194,36 @@ class Accumulator:
             support_in_cavities_mm3=float(inside[support].sum()),
             in_cavities_at_mm=next(iter(self._at.values()), None),
             assumed=filament.assumed,
-            slicer_summary=summary_of(self._listener),
+            slicer_summary=summary_of(self._tracker),
         )
 
     def _feature(self, key: Key) -> Key:
-        """Before the first label of a file that has labels comes the printer's start G-code."""
-        if key.feature == UNLABELLED and self._listener.labelled:
+        """The key, with custom as the feature before the first label: that is start G-code."""
+        if key.feature == UNLABELLED and self._tracker.labelled:
             return key._replace(feature=CUSTOM)
         return key
 
     def _first_layer(self, kept: Sequence[int], volumes: Float) -> tuple[Float, Int]:
-        """(n, 7) beads and (n,) the bodies they belong to."""
+        """(n, 7) beads of the first layer, as ``LowestBeads``, and (n,) their bodies.
+
+        kept : groups that count;  volumes : (groups,) mm³ per unit of E.
+        """
         lowest = min(self._lowest[i].z_mm for i in kept)
         bodies = [key.body for key in self._keys]
         layers, owners = [], []
         for i in kept:
             if self._lowest[i].z_mm <= lowest + SAME_LAYER_MM:
                 beads = self._lowest[i].beads.copy()
-                unsaid = beads[:, 5] < 0
-                # As Cura and others count: a bead without a width is a box
-                beads[unsaid, 5] *= -volumes[i] / beads[unsaid, 6]
+                missing = beads[:, 5] < 0
+                # As Cura and others count, a bead without a given width has a rectangular section.
+                beads[missing, 5] *= -volumes[i] / beads[missing, 6]
                 layers.append(beads)
                 owners.append(np.full(len(beads), bodies[i]))
         return np.concatenate(layers), np.concatenate(owners)
 
 
 def _by_feature(keys: Sequence[Key], values: Float) -> dict[str, float]:
+    """Sums of values (n,), one for each key, by feature, without those that are 0."""
     sums: dict[str, float] = {}
     for key, value in zip(keys, values, strict=True):
         sums[key.feature] = sums.get(key.feature, 0.0) + float(value)

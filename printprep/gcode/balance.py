@@ -1,4 +1,4 @@
-"""How what was printed stands, from its moments and the beads of its lowest layer."""
+"""Balance of a print, from its moments and the beads of its lowest layer."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def balance_of(moments: Float, beads: Float, bed_mm: float) -> Balance:
-    """A print's balance.
+    """How a print stands on the bed.
 
-    moments : (10,) as :mod:`printprep.gcode.moments` has them, in grams;  beads : (n, 7) that touch
-    the bed, n = 0 for none;  bed_mm : the bed's height in the machine.
+    moments : (10,) as in :mod:`printprep.gcode.moments`, in g, g·mm and g·mm²;  beads : (n, 7) that
+    touch the bed, as ``LowestBeads``, n = 0 for none;  bed_mm : height of the bed in the machine.
     """
     x, y, z = (float(value) for value in moments[1:4] / moments[0])
     centre = (x, y, z - bed_mm)

@@ -1,7 +1,7 @@
-"""What a stretch of G-code prints, under one name for every slicer's own.
+"""Features of G-code (perimeter, infill, support …): one name for the labels of all slicers.
 
-Names are those of PrusaSlicer (libslic3r's ExtrusionRole), in lower case.  SuperSlicer adds a few;
-OrcaSlicer and BambuStudio name them anew (`;TYPE:` or `; FEATURE:`); Cura writes capitals.
+The names are those of PrusaSlicer (libslic3r's ExtrusionRole), in lower case.  SuperSlicer adds a
+few; OrcaSlicer and BambuStudio use others (`;TYPE:` or `; FEATURE:`); Cura writes capitals.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ UNLABELLED = "unlabelled"
 OTHER = "other"
 SUPPORT = frozenset({"support material", "support material interface"})
 
-# What is thrown away after printing, or never was part of the model
+# Features that are removed after printing, or never belong to the model.
 LEFT_OUT = SUPPORT | {"skirt", "brim", "wipe tower", CUSTOM}
 
 _NAMES = {
-    # PrusaSlicer; since 2.6 brim has a role of its own
+    # PrusaSlicer; since 2.6 brim is a role of its own
     "perimeter": "perimeter",
     "external perimeter": "external perimeter",
     "overhang perimeter": "overhang perimeter",
@@ -66,5 +66,5 @@ _NAMES = {
 
 
 def feature_of(label: str) -> str:
-    """The name of what a slicer labels so; an unknown label is part of the model (``other``)."""
+    """The feature that a slicer's label stands for; an unknown label is ``other``, model."""
     return _NAMES.get(label.strip().lower(), OTHER)

@@ -1,4 +1,4 @@
-"""The contact a print makes with its bed: the beads of its lowest layer."""
+"""Contact of a print with the bed: the beads of its lowest layer and the area they cover."""
 
 from __future__ import annotations
 
@@ -15,18 +15,21 @@ if TYPE_CHECKING:
 
 _TILE = 256  # outlines united at a time: the work grows faster than their number
 SAME_LAYER_MM = 1e-3  # G-code has three decimals
-_ROUND = 16  # corners of the circle that ends a bead: its area is 2.6 % short of round
+_ROUND = 16  # corners of the circle at the end of a bead: its area is 2.6 % too small
 
 
 @dataclass
 class LowestBeads:
-    """The beads of one kind on the lowest layer met so far: (n, 7) x, y, x, y, z, width, height."""
+    """The beads of one group on its lowest layer so far.
+
+    beads : (n, 7) mm: x, y of the start, x, y of the end, z of the top, width, height.
+    """
 
     z_mm: float = np.inf
     _beads: list[Float] = field(default_factory=list)
 
-    def meet(self, beads: Float) -> None:
-        """Take in the beads of a piece of the file; only those on the lowest layer are kept."""
+    def add(self, beads: Float) -> None:
+        """Add beads (k, 7) of a piece of the file; only those on the lowest layer are kept."""
         lowest = float(beads[:, 4].min())
         if lowest < self.z_mm - SAME_LAYER_MM:
             self._beads.clear()
@@ -37,14 +40,15 @@ class LowestBeads:
 
     @property
     def beads(self) -> Float:
+        """(n, 7) all of them."""
         return np.concatenate(self._beads) if self._beads else np.zeros((0, 7))
 
 
 def union_of(beads: Float) -> CrossSection:
-    """What (n, 7) beads cover: each segment buffered by half its width, with round ends."""
+    """The region that beads (n, 7) cover: each axis widened by half the width, with round ends."""
     from manifold3d import CrossSection, FillRule, OpType
 
-    beads = np.unique(beads, axis=0)  # neighbours come together, repeats count once
+    beads = np.unique(beads, axis=0)  # sorted, so that neighbours share a tile; without repeats
     a, b, half = beads[:, :2], beads[:, 2:4], beads[:, 5] / 2
     along = b - a
     heading = np.arctan2(along[:, 1], along[:, 0])

@@ -1,9 +1,10 @@
-"""G-code text as arrays: the lines that move something, taken apart without a loop over lines.
+"""Splits G-code text into arrays: all lines with moves at once, without a loop over lines.
 
-Notation of the arrays: n rows (lines with G0–G3, G28 or G92), in the order of the file; words of a
-row in the columns of ``WORDS``, NaN where the row has none.  A line that begins with one of these
-words moves as the line before it did.  Line numbers (N) are passed over.  Every other line that is
-not empty is left to :mod:`printprep.gcode.modal_state`, one by one: there are few.
+Notation of the arrays: n rows (lines with G0–G3, G28 or G92), in the order of the file; a row has
+its words in the columns of ``WORDS``, NaN where it lacks one.  A line that begins with one of these
+words is a move like the one before it.  Line numbers (N) are skipped.  All other lines that are not
+empty go to :mod:`printprep.gcode.modal_state`, one by one: there are few.  In helpers ``data`` is
+the text as bytes (b,), and ``starts``, ``ends`` are places in it, one for each line.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _NUMBER[list(b"0123456789.+-")] = True
 _COLUMN = np.full(256, -1, dtype=np.int8)
 for _column, _letter in enumerate(WORDS):
     _COLUMN[[ord(_letter), ord(_letter.lower())]] = _column
-_NAME = np.zeros(256, dtype=bool)  # what would make another word of a G1 that it follows
+_NAME = np.zeros(256, dtype=bool)  # characters that make another word of a G1 that they follow
 _NAME[list(b"0123456789._")] = True
 
 
@@ -43,8 +44,8 @@ class Rows:
 
     line : (n,) int64, which line of the piece;  kind : (n,) int64: 0–3, 28 or 92;
     words : (n, 7) float64 in the units of the file, columns as ``WORDS``;
-    others : (line of the piece, text) of the lines that hold something else, in order;
-    lines : how many lines the piece has;  motion : the last of G0–G3 so far, −1 before any.
+    others : (line of the piece, text) of all other lines, in order;
+    lines : number of lines in the piece;  motion : the last of G0–G3 so far, −1 before any.
     """
 
     line: Int
@@ -56,12 +57,12 @@ class Rows:
 
 
 def read_rows(text: bytes, where: str, first_line: int, motion: int = -1) -> Rows:
-    """Take a piece of G-code apart; it must end with a line's end.
+    """Split a piece of G-code, which ends with the end of a line.
 
-    where : what to call the file;  first_line : number of the piece's first line, for errors;
+    where : name of the file, and first_line : number of the piece's first line, for errors;
     motion : the last of G0–G3 before the piece.
 
-    Raises InputError for a number that is none.
+    Raises InputError for a malformed number.
     """
     data = np.frombuffer(text + bytes(_BEYOND), dtype=np.uint8)
     ends = np.flatnonzero(data[: len(text)] == ord("\n"))
@@ -73,9 +74,9 @@ def read_rows(text: bytes, where: str, first_line: int, motion: int = -1) -> Row
     for mark in b";(*":  # comments, and checksums as hosts append them
         _cut(data, mark, starts, code_ends)
     span = starts[moving], code_ends[moving]
-    begin = span[0] + ~bare[moving]  # behind the G, where there is one
+    begin = span[0] + ~bare[moving]  # after the G, if there is one
     words = _words(data, *span, begin, kind[moving], where, first_line + moving)
-    words[kind[moving] == HOME] = np.nan  # its words only name axes
+    words[kind[moving] == HOME] = np.nan  # words of G28 only name axes
     rest = np.flatnonzero((kind < 0) & (starts < ends))
     others = tuple(
         (line, text[start:end])
@@ -87,6 +88,7 @@ def read_rows(text: bytes, where: str, first_line: int, motion: int = -1) -> Row
 
 
 def _after_blanks(data: Bytes, at: Int) -> Int:
+    """(k,) the first places from ``at`` (k,) on that hold no blank."""
     blank = (data[at] == ord(" ")) | (data[at] == ord("\t"))
     while blank.any():
         at = at + blank
@@ -95,7 +97,7 @@ def _after_blanks(data: Bytes, at: Int) -> Int:
 
 
 def _after_number(data: Bytes, at: Int) -> Int:
-    """Behind the line number, N and digits, of the lines that have one."""
+    """(k,) places ``at`` (k,), moved behind the line number (N and digits) where there is one."""
     numbered = ((data[at] == ord("N")) | (data[at] == ord("n"))) & _digit(data[at + 1])
     if not numbered.any():
         return at
@@ -106,7 +108,10 @@ def _after_number(data: Bytes, at: Int) -> Int:
 
 
 def _as_before(data: Bytes, starts: Int, kind: Int, motion: int) -> tuple[Int, Bool, int]:
-    """The kinds with lines of words alone as moves, which those are, and the last move's kind."""
+    """(k,) kinds with bare words as moves, (k,) which lines those are, and the last move's kind.
+
+    starts, kind : (k,), of each line;  motion : kind of the last move before them.
+    """
     moves = (kind >= 0) & (kind <= 3)
     word = (_COLUMN[data[starts]] >= 0) & _NUMBER[data[_after_blanks(data, starts + 1)]]
     at = np.where(moves, np.arange(len(kind)), -1)
@@ -117,7 +122,7 @@ def _as_before(data: Bytes, starts: Int, kind: Int, motion: int) -> tuple[Int, B
 
 
 def _kinds(data: Bytes, starts: Int) -> Int:
-    """The G number of each line that is a row, −1 elsewhere."""
+    """(k,) the G number of each line that is a row, −1 elsewhere; starts : (k,)."""
     number = starts + 1
     # G01 is G1
     number = number + ((data[number] == ord("0")) & _digit(data[number + 1]))
@@ -139,7 +144,7 @@ def _digit(data: Bytes) -> Bool:
 
 
 def _cut(data: Bytes, mark: int, starts: Int, code_ends: Int) -> None:
-    """Let each line's code end before the first ``mark``."""
+    """Move the ends of code (k,) to the first ``mark`` of each line, in place; starts : (k,)."""
     at = np.flatnonzero(data == mark)
     if len(at):
         line = np.searchsorted(starts, at, side="right") - 1
@@ -150,7 +155,11 @@ def _cut(data: Bytes, mark: int, starts: Int, code_ends: Int) -> None:
 def _words(
     data: Bytes, starts: Int, ends: Int, begin: Int, kind: Int, where: str, numbers: Int
 ) -> Float:
-    """(n, 7) float64: the words of the rows that span starts … ends and hold them from begin on."""
+    """(n, 7) float64, the words of the rows.
+
+    starts, ends, begin : (n,) places of each row and of its first word;  kind : (n,);
+    where, numbers : name of the file and (n,) line numbers, for errors.
+    """
     words = np.full((len(starts), len(WORDS)), np.nan)
     if not len(starts):
         return words
@@ -166,16 +175,19 @@ def _words(
         wrong = int(np.argmin(sound))
         text = bytes(data[starts[row[wrong]] : ends[row[wrong]]]).decode("ascii", "replace")
         line = numbers[row[wrong]]
-        raise InputError(f"{where}: line {line}: {text!r} has a word that is no number")
+        raise InputError(
+            f"{where}, line {line}: {text!r} has a word without a valid number.",
+            "Slice the model again.",
+        )
     words[row, _COLUMN[data[at]]] = values
     return words
 
 
 def _numbers(data: Bytes, at: Int) -> tuple[Float, Bool]:
-    """The decimal numbers that begin at ``at``, and which of them are well formed.
+    """(k,) the decimal numbers that begin at ``at`` (k,), and (k,) which of them are well formed.
 
-    Digits are gathered as one integer and divided once by a power of ten; both are exact in
-    double precision up to 2⁵³ and 10²², so that the result is the nearest double.
+    The digits become one integer, which is divided once by a power of ten; both are exact in double
+    precision up to 2⁵³ and 10²², so the result is the nearest double.
     """
     n = len(at)
     total = np.zeros(n, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Everything in a G-code that is not a move: modes, tools, and what slicers say in comments."""
+"""Follows all lines of a G-code that are not moves: modes, tools, and comments of slicers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from printprep.gcode.features import UNLABELLED, feature_of
 
 MM_PER_INCH = 25.4
-_TOOLS_MAX = 64  # beyond are the pseudo tools of BambuStudio (T255, T1000)
+_TOOLS_MAX = 64  # higher numbers are the pseudo tools of BambuStudio (T255, T1000)
 _SETTINGS_MAX = 4096
 _SETTING_BYTES_MAX = 1 << 16
 
@@ -33,12 +33,13 @@ _VOLUMETRIC = re.compile(rb"[DS]\s*([\d.]+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
-class State:
-    """What the moves that follow mean.
+class ModalState:
+    """The modes that give the following moves their meaning.
 
-    unit_mm : mm per unit of the file;  relative, relative_e : axes and filament count from where
-    they are;  absolute_centre : I and J are a place, not a way from the start of the arc;
-    volumetric : E is mm³, not mm;  width_mm, height_mm : NaN where nothing says them.
+    unit_mm : mm per unit of the file;  relative, relative_e : axes and filament count from their
+    present position;  absolute_centre : I and J are a position, not an offset from the start of the
+    arc;  volumetric : E is mm³, not mm;  width_mm, height_mm : of beads, NaN where no comment gives
+    them.
     """
 
     relative: bool = False
@@ -53,14 +54,14 @@ class State:
 
 
 @dataclass
-class Listener:
-    """Follows the lines that are not moves; ``state`` is what holds after the last one heard.
+class StateTracker:
+    """Follows the lines that are not moves; ``state`` holds after the last line read.
 
-    settings : what "key = value" comments say, the last one counts;  producer : the slicer;
-    labelled : whether features are named at all;  objects : labels of what is printed.
+    settings : "key = value" comments, of which the last counts;  producer : the slicer;
+    labelled : whether the file labels features;  objects : labels of the objects printed.
     """
 
-    state: State = field(default_factory=State)
+    state: ModalState = field(default_factory=ModalState)
     settings: dict[str, str] = field(default_factory=dict)
     producer: str | None = None
     labelled: bool = False
@@ -68,11 +69,12 @@ class Listener:
 
     def feed_all(
         self, lines: Iterable[tuple[int, bytes]]
-    ) -> tuple[list[State], list[int], list[int]]:
-        """Take in numbered lines: the states met, where the state changed, and which it became.
+    ) -> tuple[list[ModalState], list[int], list[int]]:
+        """Read numbered lines: the states found, the lines that change it, and to which state.
 
-        The first of the states is the one before.  A change met before is not worked out anew:
-        slicers repeat a few labels thousands of times.
+        The first of the states is the one before these lines; the last result holds indices into
+        the states.  A change seen before is looked up: slicers repeat a few labels thousands of
+        times.
         """
         states, index = [self.state], {self.state: 0}
         known: dict[tuple[int, bytes], int] = {}
@@ -93,7 +95,7 @@ class Listener:
         return states, at, became
 
     def feed(self, line: bytes) -> bool:
-        """Take in a line; True where the state is another after it."""
+        """Read a line; True where it sets a mode."""
         if line.startswith(b";"):
             return self._comment(line)
         self._object(line)
@@ -106,7 +108,7 @@ class Listener:
     def _comment(self, line: bytes) -> bool:
         label = _LABEL.match(line)
         if label is None:
-            self._said(line)
+            self._note(line)
             return False
         kind, text = label[1], label[2].strip()
         if kind in (b"TYPE", b"FEATURE"):
@@ -126,7 +128,8 @@ class Listener:
             name = next(part for part in found.groups() if part)
             self.objects.add(name.decode("utf-8", "replace").strip())
 
-    def _said(self, line: bytes) -> None:
+    def _note(self, line: bytes) -> None:
+        """Keep what a comment tells about the object, the slicer or a setting."""
         self._object(line)
         if self.producer is None:
             found = _PRODUCER.search(line) or _ORCA_HEAD.match(line)
@@ -160,7 +163,7 @@ class Listener:
 
 
 def numbers(settings: Mapping[str, str], key: str) -> tuple[float, ...]:
-    """The numbers of a setting, one for each extruder; empty where there is none."""
+    """The numbers of a setting, one for each extruder; empty where the file has none."""
     found = re.split(r"[,;]", settings.get(key, ""))
     values = [re.match(r"\s*([-+]?\d*\.?\d+)", text) for text in found]
     return tuple(float(value[1]) for value in values if value is not None)

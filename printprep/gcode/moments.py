@@ -1,4 +1,4 @@
-"""Mass, first and second moments of filament, added up piece by piece.
+"""Amount, first and second moments of straight stretches of filament, and sums of them.
 
 A stretch is a bar of even density from a to b.  Per unit of filament its moments are
 ∫ x = (a + b) / 2 and ∫ x xᵀ = (a aᵀ + b bᵀ) / 3 + (a bᵀ + b aᵀ) / 6, and its cross-section, w wide
@@ -20,9 +20,10 @@ COLUMNS = 1 + 3 + len(_PAIRS)
 
 
 def moments_of(start: Float, end: Float, filament: Float, width: Float, height: Float) -> Float:
-    """(n, 10) float64: filament, its first moments, its second (xx, yy, zz, xy, xz, yz).
+    """(n, 10) float64: filament, first moments (x, y, z), second (xx, yy, zz, xy, xz, yz).
 
-    start, end : (n, 3) mm, axes of the beads;  width, height : (n,) mm of them.
+    start, end : (n, 3) mm, axes of the beads;  filament : (n,) in any unit;  width, height : (n,)
+    mm.
     """
     columns = [filament, *((filament / 2)[:, None] * (start + end)).T]
     along = end - start
@@ -40,13 +41,13 @@ def moments_of(start: Float, end: Float, filament: Float, width: Float, height: 
 
 
 def sums_by(group: Int, values: Float, groups: int) -> Float:
-    """(groups, k): the rows of (n, k) values added up by group."""
+    """(groups, k) sums of the rows of values (n, k) by group (n,)."""
     columns = [np.bincount(group, column, minlength=groups) for column in values.T]
     return np.stack(columns, axis=1)
 
 
 def inertia_about_centre(moments: Float) -> Float:
-    """(3, 3) of (10,) moments: the inertia tensor about their centre."""
+    """(3, 3) inertia tensor about the centre of mass, from moments (10,)."""
     mass, first, second = moments[0], moments[1:4], moments[4:]
     scatter = np.zeros((3, 3))
     for (i, j), value in zip(_PAIRS, second, strict=True):

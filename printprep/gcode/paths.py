@@ -1,9 +1,8 @@
-"""From rows of words to straight stretches of deposited filament, in mm of the machine.
+"""Turns rows of G-code words into straight stretches of deposited filament, in machine mm.
 
-Followed as the firmware follows them: absolute and relative axes (G90, G91) and filament (M82,
-M83; G91 makes the filament relative too, as PrusaSlicer reads it), new origins (G92: the head stays
-where it is), and arcs (G2, G3) by radius or by centre, which is relative (G91.1) unless G90.1 says
-otherwise.
+It follows the rows as a firmware does: absolute and relative axes (G90, G91) and filament (M82,
+M83; G91 makes the filament relative too, as PrusaSlicer reads it), new origins (G92: the head does
+not move), and arcs (G2, G3) by radius or by centre, which is relative (G91.1) except after G90.1.
 """
 
 from __future__ import annotations
@@ -14,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
 from printprep.gcode.lexer import HOME, SET, E, I, J, R, Rows, X, Y, Z
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
-    from printprep.gcode.modal_state import State
+    from printprep.gcode.modal_state import ModalState
 
 
 _TURN_DEG = 5.0  # an arc becomes chords of at most this turn: sagitta 0.1 % of the radius
@@ -26,7 +26,7 @@ _TURN_DEG = 5.0  # an arc becomes chords of at most this turn: sagitta 0.1 % of 
 
 @dataclass(frozen=True, eq=False)
 class Stretches:
-    """n straight stretches in the order printed.
+    """Straight stretches in the order of printing.
 
     start_mm, end_mm : (n, 3) of the nozzle;  filament : (n,) positive, mm or, where volumetric,
     mm³;  state : (n,) index into the states given.
@@ -39,16 +39,16 @@ class Stretches:
 
 
 class Walker:
-    """Carries the head's position and the filament's from one piece of a file to the next."""
+    """Keeps the position of the head and the filament from one piece of a file to the next."""
 
     def __init__(self) -> None:
-        self._at = np.zeros(4)  # x, y, z, e as the file counts them, mm
-        self._origin = np.zeros(3)  # what G92 added up to: machine = file + origin
+        self._at = np.zeros(4)  # x, y, z, e in the file's coordinates, mm
+        self._origin = np.zeros(3)  # sum of all G92: machine = file + origin
 
-    def walk(self, rows: Rows, state_of_row: Int, states: Sequence[State]) -> Stretches:
-        """The stretches that a piece deposits.
+    def walk(self, rows: Rows, state_of_row: Int, states: Sequence[ModalState]) -> Stretches:
+        """The stretches that a piece of the file deposits.
 
-        state_of_row : (n,) index into ``states`` of what holds at each row.
+        state_of_row : (n,) for each row the index of its state in ``states``.
         """
         n = len(rows.kind)
         if n == 0:
@@ -58,7 +58,7 @@ class Walker:
         relative = np.array([state.relative for state in states])[state_of_row]
         relative_e = np.array([state.relative_e for state in states])[state_of_row] | relative
         sets = (rows.kind == SET) | (rows.kind == HOME)
-        after = np.empty((n, 4))  # every column is written below
+        after = np.empty((n, 4))  # the loop below writes every column
         for axis, counts in ((X, relative), (Y, relative), (Z, relative), (E, relative_e)):
             after[:, axis] = _follow(words[:, axis], counts & ~sets, self._at[axis])
         before = np.vstack([self._at, after[:-1]])
@@ -74,11 +74,12 @@ class Walker:
             return made
         placed = np.array([state.absolute_centre for state in states])[state_of_row][kept]
         words, before = words[kept], before[kept]
-        words[placed, I] -= before[placed, X]  # both as the file counts
+        words[placed, I] -= before[placed, X]  # both in the file's coordinates
         words[placed, J] -= before[placed, Y]
         return _straightened(made, rows.kind[kept], words)
 
-    def _in_mm(self, rows: Rows, state_of_row: Int, states: Sequence[State]) -> Float:
+    def _in_mm(self, rows: Rows, state_of_row: Int, states: Sequence[ModalState]) -> Float:
+        """(n, 7) words in mm (E in mm³ where volumetric); a bare G92 or G28 sets all axes to 0."""
         words = rows.words.copy()
         unit = np.array([state.unit_mm for state in states])[state_of_row]
         if (unit != 1.0).any():
@@ -92,7 +93,10 @@ class Walker:
         return words
 
     def _origins(self, kind: Int, before: Float, after: Float) -> Float:
-        """(n, 3) or (1, 3): the machine's place of the file's origin, at each row."""
+        """(n, 3) or (1, 3) mm, machine position of the file's origin at each row.
+
+        kind : (n,);  before, after : (n, 4) position in the file's coordinates.
+        """
         moved = np.where((kind == SET)[:, None], before[:, :3] - after[:, :3], 0.0)
         if not moved.any():
             return self._origin[None, :]
@@ -102,7 +106,10 @@ class Walker:
 
 
 def _follow(value: Float, relative: Bool, start: float) -> Float:
-    """Where an axis is after each row: set by absolute words, advanced by relative ones."""
+    """(n,) position of an axis after each row: absolute words set it, relative ones add to it.
+
+    value : (n,) words, NaN for none;  relative : (n,);  start : position before the first row.
+    """
     given = ~np.isnan(value)
     last = np.maximum.accumulate(np.where(given & ~relative, np.arange(len(value)), -1))
     after = np.where(last >= 0, value[last], start)
@@ -113,13 +120,15 @@ def _follow(value: Float, relative: Bool, start: float) -> Float:
 
 
 def _straightened(made: Stretches, kind: Int, words: Float) -> Stretches:
-    """The same with each arc as chords, filament spread evenly over its angle."""
+    """The same stretches with each arc as chords, its filament spread evenly over the angle.
+
+    kind : (n,) G number;  words : (n, 7) mm.
+    """
     arc = kind >= 2
     centre, turn = _arcs(made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc])
     pieces = np.ones(len(kind), dtype=np.int64)
     pieces[arc] = np.maximum(1, np.ceil(np.abs(turn) / np.radians(_TURN_DEG))).astype(np.int64)
-    owner = np.repeat(np.arange(len(kind)), pieces)
-    step = np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    owner, step = runs(pieces)
     ends = []
     for shift in (0, 1):
         share = (step + shift) / pieces[owner]
@@ -137,10 +146,11 @@ def _straightened(made: Stretches, kind: Int, words: Float) -> Stretches:
 
 
 def _arcs(start: Float, end: Float, clockwise: Bool, words: Float) -> tuple[Float, Float]:
-    """(n, 2) centres and (n,) signed turns in radians, counter-clockwise positive.
+    """(n, 2) mm, centres of arcs, and (n,) their turns in radians, counter-clockwise positive.
 
-    With R, the centre lies on the chord's normal, on the side that makes the turn less than 180°
-    for R > 0 and more for R < 0.  A chord longer than 2 |R| is taken as the diameter.
+    start, end : (n, 3) mm;  clockwise : (n,);  words : (n, 7) mm.  With R, the centre lies on the
+    chord's normal, on the side that makes the turn less than 180° for R > 0 and more for R < 0.
+    Where the chord is longer than 2 |R|, it counts as the diameter.
     """
     a, b = start[:, :2], end[:, :2]
     centre = a + np.nan_to_num(words[:, [I, J]])

@@ -1,4 +1,4 @@
-"""What a G-code prints, as far as mass and balance go."""
+"""The results of measuring a G-code: mass, balance, contact, and the slicer's own summary."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SlicerSummary:
-    """What the slicer wrote into the file of itself and its settings; None where it did not.
+    """What the slicer's comments tell about the print; None where they do not.
 
-    producer : name and version;  filament_mm3, filament_g : of all extruders, by its own count;
-    seconds : its estimate of the printing time;  settings : its "key = value" comments.
+    producer : name and version of the slicer;  filament_mm3, filament_g : its sums over all
+    extruders;  seconds : its estimate of the printing time;  settings : "key = value" comments.
     """
 
     producer: str | None
@@ -27,9 +27,9 @@ class SlicerSummary:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """How a print, or one body of it, stands; as ``Printed`` says.
+    """How a print, or one body of it, stands; the fields are those of ``Printed``.
 
-    Without contact with the bed the polygon is empty and ``tilt_deg`` None.
+    contact_polygon_mm : (k, 2).  Without contact with the bed it is empty and ``tilt_deg`` is None.
     """
 
     mass_g: float
@@ -41,21 +41,23 @@ class Balance:
 
 @dataclass(frozen=True, eq=False)
 class Printed:
-    """Measured from the moves; mm of the machine, heights above the underside of the lowest layer.
+    """A print as measured from its moves, in mm of the machine.
 
-    mass_g, volume_mm3, centre_of_mass_mm, inertia_g_mm2 : of what stays of the print
-    (``left_out`` names what does not); the inertia, (3, 3), is about the centre of mass.
-    contact_polygon_mm : (k, 2) counter-clockwise hull of the first layer, each bead as wide as the
-    file says;  contact_area_mm2 : of the beads' union.
+    Heights count from the underside of the lowest layer, except in ``bounds_mm``.
+
+    mass_g, volume_mm3, centre_of_mass_mm, inertia_g_mm2 : of the print without the features in
+    ``left_out``; the inertia, (3, 3), is about the centre of mass.
+    contact_polygon_mm : (k, 2) counter-clockwise hull of the first layer, with beads as wide as the
+    file gives;  contact_area_mm2 : of the union of the beads.
     tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself.
-    bodies : each by itself, in the order they were given; empty where none were.
-    feature_mass_g, feature_volume_mm3 : by feature, what is left out too.
-    bounds_mm : (2, 3) low and high corners of what stays, whole beads; z of the machine.
+    bodies : each body by itself, in the order given; empty where none were given.
+    feature_mass_g, feature_volume_mm3 : by feature, those in ``left_out`` too.
+    bounds_mm : (2, 3) low and high corners of whole beads, without ``left_out``; z of the machine.
     objects : labels of the objects printed, where the file labels them.
-    filament_mm3 : all of it but custom G-code: what slicers count as filament used.
+    filament_mm3 : all but custom G-code, as slicers count the filament used.
     in_cavities_mm3, support_in_cavities_mm3 : deposited inside the cavities given, and the support
-    among it;  in_cavities_at_mm : a place of the first, or None.
-    assumed : what the file does not say and was taken for granted, one sentence each.
+    in this;  in_cavities_at_mm : a place of the first, or None.
+    assumed : figures that the file does not give, one sentence each.
     """
 
     mass_g: float

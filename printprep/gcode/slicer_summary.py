@@ -1,10 +1,10 @@
-"""The slicer's own account of a print, read from its comments."""
+"""Reads the slicer's own summary of a print (filament, time, settings) from its comments."""
 
 from __future__ import annotations
 
 import re
 
-from printprep.gcode.modal_state import Listener, numbers
+from printprep.gcode.modal_state import StateTracker, numbers
 from printprep.gcode.printed import SlicerSummary
 
 _SPAN = {"d": 86400, "h": 3600, "m": 60, "s": 1}
@@ -15,13 +15,13 @@ _TIME_KEYS = (
 )
 
 
-def summary_of(listener: Listener) -> SlicerSummary:
-    """What a file said, once all of it was heard."""
-    settings = listener.settings
+def summary_of(tracker: StateTracker) -> SlicerSummary:
+    """The summary, after the last line of the file."""
+    settings = tracker.settings
     cm3 = numbers(settings, "filament used [cm3]")
     grams = numbers(settings, "filament used [g]")
     return SlicerSummary(
-        producer=listener.producer,
+        producer=tracker.producer,
         filament_mm3=1000 * sum(cm3) if cm3 else None,
         filament_g=sum(grams) if grams and sum(grams) else None,
         seconds=_seconds(settings),

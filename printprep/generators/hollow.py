@@ -1,4 +1,4 @@
-"""Hollow one sample of a generator's voxels; see the package's docstring for where it goes."""
+"""Hollow one sample of a generator's voxels; the package's docstring shows its use."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from printprep.arrays import Bool, Float
 from printprep.errors import UsageError
-from printprep.generators.form import occupancy
 from printprep.generators.surface import VoxelSurface, surface_of
+from printprep.generators.voxel_arrays import occupancy
 from printprep.objectives import (
     DEFAULT_OBJECTIVE,
     PLANE,
@@ -20,7 +20,7 @@ from printprep.objectives import (
     objective_of,
 )
 from printprep.paper.domain import (
-    Filling,
+    FillRule,
     PaperDomain,
     ShellRule,
     build_domain,
@@ -29,17 +29,17 @@ from printprep.paper.settings import PaperSettings
 from printprep.stand.lean import MOST_DEG
 
 Solve = Callable[[PaperDomain], Float]
-"""Density of a domain, (64, 64, 64) in [0, 1]: what is above one half is material."""
+"""The density of a domain, (64, 64, 64) in [0, 1]; above one half is material."""
 
 
 @dataclass(frozen=True, eq=False)
 class VoxelHollow:
-    """What to build, in the generator's own form, and what to leave out.
+    """The hollowed voxels, in the generator's own form, and the cavity.
 
-    material : V, the voxels to hand to the generator's second stage, in the form of the input
-        (coordinates with the same columns and number type, or a binary array; numpy or torch).
+    material : V, the voxels for the generator's second stage, in the form of the input: coordinates
+        (n, 3) or (n, 4) with the same number type, or a binary array (64, 64, 64); numpy or torch.
     cavity : the surface of H, closed, in [-0.5, 0.5]³.
-    domain : shell, interior and base the density was found on.
+    domain : shell, interior and base of the voxels.
     density : (64, 64, 64) float64, ρ̃.
     cavity_voxels, material_voxels : (64, 64, 64) bool, H and V.
     mass_ratio : voxels of V over voxels of the filled solid, base included.
@@ -65,9 +65,9 @@ def hollow(
     batch: int = 0,
     device: str = "cpu",
     shell: ShellRule = "auto",
-    filling: Filling = "flood",
+    filling: FillRule = "flood",
 ) -> VoxelHollow:
-    """Fill the solid that voxels describe, optimize its interior, and hand the material back.
+    """Fill the solid that voxels describe, optimize its interior, and return the material.
 
     Parameters
     ----------
@@ -76,20 +76,23 @@ def hollow(
         stands at ``lean_deg`` (:mod:`printprep.paper.voxel_lean`), or "paper", the paper's terms.
     solver : of the paper's terms: "plane", or "adam" on ``device``.
     settings : the paper's parameters; None for its values.
-    solve : another program in place of the paper's: a function from the domain to a density.
-    batch : which sample of a batched tensor; its number is kept in the result's batch column.
-    shell, filling : see `build_domain`; a surface that leaks wants filling="slices".
+    solve : a function from the domain to a density, in place of the objective.
+    batch : the sample of a batched tensor; the result's batch column keeps its number.
+    shell, filling : see `build_domain`; a surface that leaks needs filling="slices".
 
     Raises
     ------
-    InputError : the voxels cannot be read as such.
+    InputError : the input is not voxels.
     UsageError : options that exclude each other, or that do not exist.
     """
     occupied, form = occupancy(voxels, batch=batch)
     chosen = settings or PaperSettings()
     how = Solver(solver, device)
     if solve is not None and how != Solver():
-        raise UsageError("solver and device belong to an objective, not to solve.")
+        raise UsageError(
+            "solver and device belong to an objective, not to solve.",
+            "Leave out solver and device, or solve.",
+        )
     row = objective_of(objective)
     check_solver(row, how)
     if not 0 <= lean_deg <= MOST_DEG:
@@ -97,7 +100,10 @@ def hollow(
     domain = build_domain(occupied, chosen, shell=shell, filling=filling)
     density = row.on_voxels(domain, lean_deg, chosen, how) if solve is None else solve(domain)
     if density.shape != domain.shape:
-        raise UsageError(f"solve gave a density of shape {density.shape}, not {domain.shape}")
+        raise UsageError(
+            f"solve returns a density of shape {density.shape}, not {domain.shape}.",
+            "Return one number for each voxel of the domain.",
+        )
     material = domain.shell | (domain.free & (density > 0.5))
     cavity = domain.solid & ~material
     return VoxelHollow(

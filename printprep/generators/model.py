@@ -1,4 +1,4 @@
-"""A generator's voxels as a model: the surface of the solid they mean."""
+"""Read a voxel file as a model: the surface of the solid that its voxels describe."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from printprep.generators.form import occupancy
 from printprep.generators.read import read_voxels
 from printprep.generators.surface import surface_of
+from printprep.generators.voxel_arrays import occupancy
 from printprep.mesh.read import RawMesh
 from printprep.paper.domain import fill
 
 
 def read_model(path: Path) -> RawMesh:
-    """The filled solid of a voxel file as triangles, 1 mm along the grid's edge, z up.
+    """Read the filled solid of a voxel file as triangles, 1 mm along the grid's edge, z up.
 
-    The generator's frame [-0.5, 0.5]³ has no unit: a size is to be asked for beside it.
+    The generator's frame [-0.5, 0.5]³ has no unit: the caller asks for a size.
 
-    Raises InputError when the file cannot be read as voxels, or holds none.
+    Raises InputError when the file is not a voxel file, or holds no voxel.
     """
     occupied, _ = occupancy(read_voxels(path), name=str(path))
     surface = surface_of(fill(occupied))

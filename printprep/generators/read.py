@@ -1,4 +1,4 @@
-"""Voxel files: .npz, .npy and .pt, read without ever running what a file brings along."""
+"""Read voxel files (.npz, .npy and .pt) without running any code from a file."""
 
 from __future__ import annotations
 
@@ -15,44 +15,47 @@ import numpy as np
 from numpy.typing import NDArray
 
 from printprep.errors import InputError
-from printprep.generators.form import LIMIT_BYTES
+from printprep.generators.voxel_arrays import LIMIT_BYTES
 
 NAMES = ("coords", "coordinates", "voxels", "binary_voxel", "occupancy")
-"""What the array is called in a file that holds several, in order of preference."""
+"""Names of the voxel array in a file with several arrays, in order of preference."""
 
 SUFFIXES = (".npz", ".npy", ".pt")
 
 DAMAGE = (OSError, ValueError, EOFError, KeyError, MemoryError, zipfile.BadZipFile, zlib.error)
-"""What readers raise on bytes that are not what they expect; damage has no one type."""
+"""Errors that readers raise on damaged or foreign files; they have no common type."""
 
 NUMPY_ERRORS = (*DAMAGE, SyntaxError, tokenize.TokenError, NotImplementedError)
 TORCH_ERRORS = (*DAMAGE, RuntimeError, IndexError, TypeError, AttributeError)
 
 
 def read_voxels(path: Path | str) -> NDArray[Any]:
-    """The voxel array of a file, as `printprep.generators.hollow` takes it.
+    """Read the voxel array of a file, as `printprep.generators.hollow` takes it.
 
     A file with several arrays (.npz, or a dict in .pt) must hold one of the names coords,
     coordinates, voxels, binary_voxel, occupancy.
+    Returns (n, 3) or (n, 4) coordinates, or a binary array (64, 64, 64).
 
-    Raises InputError when the file cannot be read, is too large, holds pickled objects, or it is
-    not clear which array is meant.
+    Raises InputError when the file cannot be read, is too large, holds pickled objects, or holds
+    several arrays and none of these names.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(
-            f"{path}: {suffix or 'no suffix'} is not a voxel file", "give .npz, .npy or .pt"
+            f"{path}: {suffix or 'a file without suffix'} is not a voxel file.",
+            "Use .npz, .npy or .pt.",
         )
     try:
         size = path.stat().st_size
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}") from error
+        raise InputError(f"{path}: {error.strerror or error}.", "Check the path.") from error
     _limit(path, size)
     return _torch_file(path) if suffix == ".pt" else _numpy_file(path, suffix)
 
 
 def _numpy_file(path: Path, suffix: str) -> NDArray[Any]:
+    """The voxel array of a .npy or .npz file, of any shape (…, …)."""
     try:
         if suffix == ".npy":
             with path.open("rb") as handle:
@@ -67,11 +70,13 @@ def _numpy_file(path: Path, suffix: str) -> NDArray[Any]:
 
 
 def _array(handle: IO[bytes]) -> NDArray[Any]:
+    """An array of any shape (…, …) in numpy's format, without pickled objects."""
     array: NDArray[Any] = np.lib.format.read_array(handle, allow_pickle=False)
     return array
 
 
 def _torch_file(path: Path) -> NDArray[Any]:
+    """The voxel tensor of a .pt file as an array, of any shape (…, …)."""
     import torch
 
     try:
@@ -79,13 +84,13 @@ def _torch_file(path: Path) -> NDArray[Any]:
             with zipfile.ZipFile(path) as archive:
                 _limit(path, sum(entry.file_size for entry in archive.infolist()))
         with warnings.catch_warnings():
-            # It warns of pickle protocols it may not know, and then says whether it did.
+            # torch warns of unknown pickle protocols, and then raises if it cannot read them.
             warnings.simplefilter("ignore")
             loaded = torch.load(path, map_location="cpu", weights_only=True)
     except pickle.UnpicklingError as error:
         raise InputError(
-            f"{path}: it holds objects that are not tensors, or is damaged",
-            "save the tensor itself: torch.save(coords, path)",
+            f"{path}: the file holds objects other than tensors, or is damaged.",
+            "Save the tensor itself: torch.save(coords, path).",
         ) from error
     except TORCH_ERRORS as error:
         raise _unreadable(path, error) from error
@@ -93,33 +98,45 @@ def _torch_file(path: Path) -> NDArray[Any]:
         tensors = {str(key): value for key, value in loaded.items() if torch.is_tensor(value)}
         loaded = tensors[_chosen(path, list(tensors))]
     if not torch.is_tensor(loaded):
-        raise InputError(f"{path}: it holds a {type(loaded).__name__}, not a tensor")
+        raise InputError(
+            f"{path}: the file holds a {type(loaded).__name__}, not a tensor.",
+            "Save the tensor itself: torch.save(coords, path).",
+        )
     if loaded.layout != torch.strided or loaded.is_quantized or loaded.dtype == torch.bfloat16:
-        raise InputError(f"{path}: the tensor is not a plain array of numbers")
+        raise InputError(
+            f"{path}: the tensor is not a plain array of numbers.",
+            "Save a dense tensor of integers or booleans.",
+        )
     array: NDArray[Any] = loaded.detach().numpy()
     return array
 
 
 def _chosen(path: Path, names: list[str]) -> str:
-    """The array meant: the only one, or the one of a known name."""
+    """Name of the voxel array: the only one, or the first known name."""
     if len(names) == 1:
         return names[0]
     for name in NAMES:
         if name in names:
             return name
     listed = ", ".join(names[:8]) or "none"
-    raise InputError(f"{path}: which array is meant? It holds {listed}", f"name it {NAMES[0]}")
+    raise InputError(
+        f"{path}: none of its arrays ({listed}) has a known name.",
+        f"Name the voxel array {NAMES[0]}.",
+    )
 
 
 def _limit(path: Path, size: int) -> None:
+    """Raise when a file is larger than one grid of voxels."""
     if size > LIMIT_BYTES:
         raise InputError(
-            f"{path}: {size / 2**20:.0f} MiB is more than one grid of voxels", "give one sample"
+            f"{path}: {size / 2**20:.0f} MiB is more than one grid of voxels.",
+            "Save one sample only.",
         )
 
 
 def _unreadable(path: Path, error: BaseException) -> InputError:
     first = str(error).partition("\n")[0] or type(error).__name__
     return InputError(
-        f"{path}: not readable as voxels ({first})", "save it again with numpy or torch"
+        f"{path}: the file cannot be read as voxels ({first}).",
+        "Save it again with numpy or torch.",
     )

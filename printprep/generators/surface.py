@@ -1,4 +1,4 @@
-"""Triangles around a set of voxels, in the generator's frame."""
+"""The surface of a set of voxels as triangles, in the generator's frame."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from printprep.arrays import Float, Int
 class VoxelSurface:
     """A closed surface, counter-clockwise seen from outside; empty arrays around no voxels.
 
-    vertices : (v, 3) float64 in [-0.5, 0.5]³, axis order x, y, z, z up unless turned.
+    vertices : (v, 3) float64 in [-0.5, 0.5]³, axis order x, y, z, z up unless turned y up.
     faces : (f, 3) int64.
     """
 
@@ -22,19 +22,19 @@ class VoxelSurface:
     faces: Int
 
     def turned_y_up(self) -> VoxelSurface:
-        """In the frame of the generator's exported files: (x, y, z) → (x, z, −y)."""
+        """The surface in the frame of the generator's exported files: (x, y, z) → (x, z, −y)."""
         x, y, z = self.vertices.T
         return VoxelSurface(np.stack((x, z, -y), axis=1), self.faces)
 
 
 LEVEL = 0.501
-"""Just above one half: at one half a face whose voxels are set crosswise is a tie, which its two
-cells may settle differently and so leave a hole.  Above it the voxels set there do not join, so
-cavities that meet in an edge alone stay apart."""
+"""Just above one half: at one half a face with diagonal voxels is a tie, which its two cells may
+decide differently, and so leave a hole.  Above one half diagonal voxels do not join, so cavities
+that share only an edge stay apart."""
 
 
 def surface_of(voxels: NDArray[np.bool_]) -> VoxelSurface:
-    """Marching cubes between voxel centres.
+    """The surface of voxels, by marching cubes between voxel centres.
 
     Source: Lewiner et al., 2003, DOI 10.1080/10867651.2003.10487582.  The surface lies half a voxel
     outside the outermost centres along each axis and cuts the corners, so a cavity's surface stays
@@ -47,7 +47,7 @@ def surface_of(voxels: NDArray[np.bool_]) -> VoxelSurface:
     from skimage.measure import marching_cubes
 
     padded = np.pad(voxels, 1).astype(np.float32)
-    # To skimage the inside of an object is what is below the level, unless told that it ascends.
+    # "ascent" tells skimage that the inside is above the level.
     vertices, faces, _, _ = marching_cubes(padded, LEVEL, gradient_direction="ascent")
     centred = (vertices.astype(np.float64) - 0.5) / np.array(voxels.shape) - 0.5
     return VoxelSurface(centred, faces.astype(np.int64))

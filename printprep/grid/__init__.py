@@ -1,1 +1,1 @@
-"""The voxel picture of a solid: grids, signed distance, and the domain that may change."""
+"""Voxels of a solid: grids, signed distance to the surface, and the domain of the optimization."""

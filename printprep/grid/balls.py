@@ -1,4 +1,4 @@
-"""Largest inscribed balls, by pattern search on an exact distance."""
+"""Finds the largest inscribed balls, by pattern search on an exact distance."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from printprep.arrays import Float
 
-# The last step as a share of the first: how exact a depth becomes.
+# The last step as a share of the first; it sets the accuracy of the depth.
 LAST_STEP = 0.01
 _STENCIL = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
@@ -17,18 +17,18 @@ _STENCIL = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 def deepest_points(
     depth_mm: Callable[[Float], Float], starts: Float, step_mm: float, enough_mm: float
 ) -> tuple[Float, Float]:
-    """Climb from each start to a local maximum of a depth function, all of them in step.
+    """Climb from each start to a local maximum of a depth function, all at the same time.
 
     Parameters
     ----------
-    depth_mm : (n, 3) points to (n,) depths, positive inside; one call serves all starts, since a
-        search tree is built for each.
+    depth_mm : points (n, 3) mm → depths (n,) mm, positive inside; each call asks for all points
+        together, since it builds a search tree.
     starts : (k, 3) mm;  step_mm : first step, about the accuracy of the starts.
-    enough_mm : a climb ends when it is this deep.
+    enough_mm : a climb ends at this depth.
 
     Returns
     -------
-    (k, 3) points and (k,) depths, each the radius of the ball inscribed there.
+    (k, 3) mm, points, and (k,) mm, depths: the radii of the balls inscribed there.
     """
     points = np.array(starts, dtype=float)
     best = depth_mm(points)

@@ -1,6 +1,6 @@
-"""How deep the material is: on the grid of the optimization, and finer where the wall will end.
+"""Measures depth below the surface: on the grid of the optimization, and finer near the wall.
 
-The free interior is what lies deeper than the wall, in mm and not in voxels (method.md); the field
+The free interior is the space deeper than the wall, in mm and not in voxels (method.md); the field
 that decides it is several times finer than the grid.
 """
 
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 # Cells of the fine field per wall: at three, the facets of a surface of curvature radius `wall`
 # stay within (wall/3)²·2/(8·wall) = 0.028 wall of it.
 CELLS_PER_WALL = 3.0
-# And no more cells along the longest side than this: 57 million at most, 230 MB.
+# Most cells along the longest side: 57 million cells in all, 230 MB.
 MOST_FINE_CELLS = 384
 
 
 @dataclass(frozen=True, eq=False)
 class Depths:
-    """Depth below a solid's surface, mm, positive inside.
+    """Depth below a solid's surface, in mm, positive inside.
 
     coarse : on the grid of the optimization.
-    field : several times finer, over the block that holds everything deeper than the wall; pockets
-    too small for the minimum feature are already closed.  None when nothing is that deep.
+    field : several times finer, over the block that holds all points deeper than the wall; pockets
+    too small for the minimum feature are closed already.  None where no point is that deep.
     """
 
     coarse: DepthField
@@ -57,15 +57,15 @@ def measure_depths(
     margin_mm: float = 0.0,
     cells_per_wall: float = CELLS_PER_WALL,
 ) -> Depths:
-    """Voxelize a solid and measure how deep its material is.
+    """Voxelize a solid and measure the depth below its surface.
 
     Parameters
     ----------
     resolution : voxels along the longest side, the paper's N (64).
     wall_mm : the depth at which a cavity may begin.
     min_feature_mm : a pocket that cannot hold a ball of this diameter stays solid.
-    margin_mm : room on the grid around the solid in x and y.
-    cells_per_wall : of the fine field.
+    margin_mm : empty margin of the grid around the solid in x and y.
+    cells_per_wall : cells of the fine field in the thickness of the wall.
     """
     surface = Surface.of(solid.manifold)
     box = np.array(solid.manifold.bounding_box())
@@ -79,7 +79,7 @@ def measure_depths(
 def _fine_field(
     surface: Surface, coarse: DepthField, wall_mm: float, cell_mm: float
 ) -> DepthField | None:
-    """The field fine enough for the wall, over the block that holds everything deeper than it."""
+    """The field with cells of ``cell_mm``, over the block that holds all points below the wall."""
     pitch = coarse.grid.pitch_mm
     maybe = coarse.depth_mm > wall_mm - pitch
     if not maybe.any():
@@ -94,7 +94,7 @@ def _fine_field(
 
 
 def _factors(ratio: float) -> tuple[int, ...]:
-    """Factors of 2 and 3, largest last, whose product is the least that reaches ``ratio``."""
+    """Factors 2 and 3, the larger last, with the smallest product that is at least ``ratio``."""
     best: tuple[int, ...] = ()
     best_product = float("inf")
     for threes in range(5):
@@ -108,14 +108,17 @@ def _factors(ratio: float) -> tuple[int, ...]:
 def close_small_pockets(
     surface: Surface, field: DepthField, wall_mm: float, min_feature_mm: float
 ) -> DepthField | None:
-    """The field with every pocket closed that cannot hold a ball of the minimum feature."""
+    """The field without pockets that cannot hold a ball of the minimum feature.
+
+    None where no pocket is left.
+    """
     from scipy.ndimage import label
 
     pocket, count = label(field.depth_mm > wall_mm)
     roomy = np.unique(pocket[field.depth_mm >= wall_mm + min_feature_mm / 2])
     small = np.ones(count + 1, dtype=bool)
     small[[0, *roomy]] = False
-    # Between cell centres a pocket is deeper than at them by half a cell's diagonal at most.
+    # Between cell centres a pocket is at most half a cell's diagonal deeper than at them.
     pitch, enough = field.grid.pitch_mm, wall_mm + min_feature_mm / 2
     hopeful = np.unique(pocket[field.depth_mm >= enough - LIPSCHITZ * pitch])
     doubtful = hopeful[small[hopeful] & (hopeful > 0)]
@@ -132,7 +135,10 @@ def close_small_pockets(
 
 
 def _peaks(pocket: NDArray[np.int32], numbers: NDArray[np.intp], field: DepthField) -> Float:
-    """(k, 3) where the field is deepest in each of these pockets."""
+    """(k, 3) mm, deepest cell centre of each pocket.
+
+    pocket : (nx, ny, nz) number of each cell's pocket;  numbers : (k,) the pockets.
+    """
     from scipy.ndimage import find_objects
 
     boxes = find_objects(pocket)

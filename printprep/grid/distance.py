@@ -1,8 +1,8 @@
-"""Signed distance to a solid's surface: exact where it decides, interpolated elsewhere.
+"""Signed distance to a solid's surface: exact near the level that matters, interpolated elsewhere.
 
-Distance is 1-Lipschitz, so a value interpolated linearly between cell centres yᵢ of pitch P is
-off by at most Σ wᵢ |x − yᵢ| ≤ √3/2 · P.  Cells farther than that from the level wanted are on the
-right side of it without being computed.  (Adaptively sampled distance fields, Frisken et al. 2000,
+Distance is 1-Lipschitz, so the error of linear interpolation between cell centres yᵢ of pitch P is
+at most Σ wᵢ |x − yᵢ| ≤ √3/2 · P.  A cell farther than that from a level is certainly on the right
+side of it, and needs no exact value.  (Adaptively sampled distance fields, Frisken et al. 2000,
 refine by the same idea.)
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from printprep.grid.grid import points_mm, subdivided
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
-from printprep.mesh.winding_columns import winding_at_of_closed
+from printprep.mesh.winding_columns import winding_in_closed
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     Float32 = NDArray[np.float32]
 
-# Largest error of trilinear interpolation of a 1-Lipschitz function, in parent pitches: half the
-# diagonal of a cell.
+# Largest error of trilinear interpolation of a 1-Lipschitz function, in pitches of the coarser
+# grid: half the diagonal of a cell.
 LIPSCHITZ = float(np.sqrt(3) / 2)
 
 
@@ -44,30 +44,33 @@ class Surface:
         return Surface(*arrays(manifold))
 
     def distance_mm(self, points: Float) -> Float:
-        """(n,) unsigned exact distance of each point (n, 3) to the surface."""
+        """(k,) mm, unsigned exact distance of points (k, 3) mm to the surface."""
         return distance_to_mesh_mm(points, self.vertices, self.faces)
 
     def contains(self, points: Float) -> NDArray[np.bool_]:
-        """(n,) bool, inside by the exact winding number along the vertical through each point.
+        """(k,) whether points (k, 3) mm lie inside, by the exact winding number along verticals.
 
-        Verticals are moved by a millionth of the surface's size, since symmetric models have
+        The verticals are moved by a millionth of the surface's size, since symmetric models have
         corners exactly above cell centres.
         """
         size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
         jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, (len(points), 2)) * size
         moved = np.column_stack([points[:, :2] + jitter, points[:, 2]])
-        result: NDArray[np.bool_] = winding_at_of_closed(moved, self.vertices, self.faces) > 0.5
+        result: NDArray[np.bool_] = winding_in_closed(moved, self.vertices, self.faces) > 0.5
         return result
 
     def depth_mm(self, points: Float) -> Float:
-        """(n,) signed distance, positive inside."""
+        """(k,) mm, signed distance of points (k, 3) mm, positive inside."""
         distance = self.distance_mm(points)
         return np.where(self.contains(points), distance, -distance)
 
 
 @dataclass(frozen=True, eq=False)
 class DepthField:
-    """Depth below the surface (positive inside, mm) at the cell centres of a grid, float32."""
+    """Depth below the surface at the cell centres of a grid.
+
+    depth_mm : (nx, ny, nz) float32, positive inside.
+    """
 
     grid: Grid
     depth_mm: Float32
@@ -76,7 +79,7 @@ class DepthField:
 def coarse_depth(surface: Surface, grid: Grid) -> DepthField:
     """Depth at every cell of a grid: exact inside and in a band of two cells outside.
 
-    Farther outside only the sign is exact; the value is minus two cells.
+    Farther outside only the sign is exact; the value is minus two pitches.
     """
     from scipy.ndimage import binary_dilation
 
@@ -91,14 +94,14 @@ def coarse_depth(surface: Surface, grid: Grid) -> DepthField:
 
 
 def refine(surface: Surface, field: DepthField, factor: int, level_mm: float) -> DepthField:
-    """The field on cells ``factor`` times finer, exact wherever it could matter for one level.
+    """The field on cells ``factor`` times smaller, exact near one level.
 
-    ``level_mm`` is the depth at which a surface will be drawn.
+    level_mm : the depth at which a surface will be extracted.
     """
     fine = subdivided(field.grid, factor)
     depth = _upsample(field.depth_mm, factor)
     slack = LIPSCHITZ * field.grid.pitch_mm
-    # Off-band cells must stay right for their own children too: one more half diagonal.
+    # Cells outside the band must stay right for their own sub-cells too: one more half diagonal.
     band = slack + LIPSCHITZ * fine.pitch_mm
     index = np.flatnonzero(np.abs(depth - np.float32(level_mm)) <= band)
     estimate = depth.flat[index]
@@ -112,13 +115,14 @@ def refine(surface: Surface, field: DepthField, factor: int, level_mm: float) ->
 
 
 def _upsample(values: Float32, factor: int) -> Float32:
-    """Linear interpolation from cell centres to the centres of ``factor``³ sub-cells."""
+    """(nx·f, ny·f, nz·f) linear interpolation of (nx, ny, nz) at the centres of f³ sub-cells."""
     for axis in range(3):
         values = _upsample_axis(values, factor, axis)
     return values
 
 
 def _upsample_axis(values: Float32, factor: int, axis: int) -> Float32:
+    """The same along one axis of values (nx, ny, nz)."""
     values = np.moveaxis(values, axis, 0)
     count = values.shape[0]
     out = np.empty((count * factor, *values.shape[1:]), dtype=np.float32)

@@ -1,7 +1,7 @@
-"""The domain of the optimization: shell, interior, free voxels, and what each of them weighs.
+"""The domain of the optimization: shell, interior and free voxels, with their moments.
 
-The weights are those of the room for cavities as it will be cut, supports and all, so that the
-linear program weighs what the surface will enclose.
+The moments are those of the hollowable volume as it will be cut, without its supports, so that the
+linear program weighs exactly what the surface of a cavity will enclose.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.grid.cell_moments import moments_in_cells
 from printprep.grid.depth import Depths
 from printprep.grid.distance import Surface
 from printprep.grid.grid import points_mm
-from printprep.grid.weigh import moments_in_cells
 from printprep.mesh.measure import bodies
 from printprep.types import Domain, Grid
 
@@ -26,16 +26,17 @@ if TYPE_CHECKING:
     from printprep.types import Solid
 
 
-# Lines through a cell's edge that weigh it: apart about a third of a wall, as the surface is drawn.
+# Dexel lines per edge of a cell: their distance is about a third of a wall, as is that of the
+# samples from which the surface is extracted.
 LINES = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Interior:
-    """The room there is for a cavity, as weighted voxels.
+    """The hollowable volume as weighted voxels.
 
-    moments : (4, n) volume in mm³ and first moments in mm⁴ of the room in each free voxel, in the
-    C order of ``domain.free``.
+    moments : (4, n) volume in mm³ and first moments in mm⁴ of the hollowable volume in each free
+    voxel, in the C order of ``domain.free``.
     """
 
     domain: Domain
@@ -43,17 +44,17 @@ class Interior:
 
 
 def weigh_interior(solid: Solid, depths: Depths, hollowable_volume: Manifold) -> Interior:
-    """The domain of a solid, its free voxels those that reach into the room for cavities.
+    """The domain of a solid; its free voxels are those that reach into the hollowable volume.
 
     Parameters
     ----------
-    hollowable_volume : all that may become cavity, as a surface inside the solid.
+    hollowable_volume : everything that may become cavity, a manifold inside the solid.
     """
     return interior_of(solid, depths, moments_in_cells(hollowable_volume, depths.grid, LINES))
 
 
 def interior_of(solid: Solid, depths: Depths, moments: Float) -> Interior:
-    """The same from (4, nx, ny, nz) moments of the room in every cell."""
+    """The same from moments (4, nx, ny, nz) of the hollowable volume in every cell."""
     grid = depths.grid
     share = moments[0] / grid.pitch_mm**3
     occupied = depths.coarse.depth_mm > 0
@@ -72,7 +73,7 @@ def interior_of(solid: Solid, depths: Depths, moments: Float) -> Interior:
 
 
 def reweighed(interior: Interior, hollowable_volume: Manifold) -> Interior:
-    """The same solid with less room in it for a cavity."""
+    """The same solid with a smaller hollowable volume."""
     domain = interior.domain
     moments = moments_in_cells(hollowable_volume, domain.grid, LINES)
     share = moments[0] / domain.grid.pitch_mm**3
@@ -91,7 +92,7 @@ def with_base(domain: Domain, base: Manifold) -> Domain:
 
 
 def _body_of_cells(manifold: Manifold, grid: Grid, cells: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Which disjoint body each cell belongs to, −1 where none."""
+    """(nx, ny, nz) index of the body that each True cell (nx, ny, nz) belongs to, −1 elsewhere."""
     result = np.full(grid.shape, -1, dtype=np.int64)
     parts = bodies(manifold)
     if len(parts) == 1:

@@ -1,70 +1,62 @@
-"""The user's G-code, changed in place: whole before, whole after, at every moment in between.
+"""Changes the user's G-code in place: the file is whole at every moment.
 
 The new content is written beside the file, forced to the disk and takes the file's name in one
-step.  Whoever stops the program, however hard, leaves the old file or the new one.
+step (``files.replacing``).  A program that is stopped, however hard, leaves the old file or the
+new one.
 """
 
 from __future__ import annotations
 
-import contextlib
-import os
 import shutil
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
 from printprep.errors import OutputError
+from printprep.files import reason_of, replacing
 
 MARK = b"; printprep: "
 _TAIL_BYTES = 1 << 16
+_COPY_BYTES = 1 << 20
 
 
 def annotate(gcode: Path, lines: Iterable[str]) -> None:
-    """Put "; printprep: " lines at the end of a G-code, instead of those it ends with already.
+    """Put "; printprep: " lines at the end of a G-code, in place of those that already end it.
 
-    Raises OutputError where the file cannot be rewritten; it is then as it was.
+    Raises OutputError where the file cannot be rewritten; it is unchanged then.
     """
-    notes = b"".join(MARK + line.encode("ascii", "replace") + b"\n" for line in lines)
     try:
         kept = _without_notes(gcode)
         newline = b"" if _ends_line(gcode, kept) else b"\n"
         with gcode.open("rb") as old:
-            _replace(gcode, old, kept, newline + notes)
+            _replace(gcode, old, kept, newline + _notes(lines))
     except OSError as error:
         raise _refused(gcode, error) from error
 
 
 def replace_content(gcode: Path, source: Path, lines: Iterable[str]) -> None:
-    """Let a G-code hold what ``source`` holds, with "; printprep: " lines at its end.
+    """Replace the content of a G-code by that of ``source``, with "; printprep: " lines at its end.
 
-    Raises OutputError where the file cannot be rewritten; it is then as it was.
+    Raises OutputError where the file cannot be rewritten; it is unchanged then.
     """
-    notes = b"".join(MARK + line.encode("ascii", "replace") + b"\n" for line in lines)
     try:
         with source.open("rb") as new:
-            _replace(gcode, new, source.stat().st_size, notes)
+            _replace(gcode, new, source.stat().st_size, _notes(lines))
     except OSError as error:
         raise _refused(gcode, error) from error
 
 
 def _replace(target: Path, content: BinaryIO, size: int, notes: bytes) -> None:
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
-    beside = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as out:
-            shutil.copyfileobj(content, out, 1 << 20)
-            out.truncate(size)
-            out.seek(size)
-            out.write(notes)
-            out.flush()
-            os.fsync(out.fileno())
-        beside.chmod(target.stat().st_mode & 0o777)
-        beside.replace(target)
-    finally:
-        # After a success the name is gone already; after a failure it must be
-        with contextlib.suppress(OSError):
-            beside.unlink(missing_ok=True)
+    """Put the first ``size`` bytes of ``content``, then ``notes``, in the place of a file."""
+    with replacing(target) as out:
+        shutil.copyfileobj(content, out, _COPY_BYTES)
+        out.truncate(size)
+        out.seek(size)
+        out.write(notes)
+
+
+def _notes(lines: Iterable[str]) -> bytes:
+    return b"".join(MARK + line.encode("ascii", "replace") + b"\n" for line in lines)
 
 
 def _without_notes(gcode: Path) -> int:
@@ -88,5 +80,4 @@ def _ends_line(gcode: Path, size: int) -> bool:
 
 
 def _refused(gcode: Path, error: OSError) -> OutputError:
-    reason = error.strerror or type(error).__name__
-    return OutputError(f"{gcode.name}: cannot be rewritten ({reason}); it is as it was")
+    return OutputError(f"{gcode.name}: cannot be rewritten ({reason_of(error)}); it is as it was")

@@ -17,7 +17,7 @@ from printprep.density.outcome import density_of
 from printprep.mesh.measure import together
 from printprep.stand.contact import contact_of
 from printprep.stand.lean import tilt_toward
-from printprep.stand.stability import balanced, least
+from printprep.stand.stability import balanced, least_stable
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -97,7 +97,7 @@ def weighed_ballast(
             ballast=ballast,
             moments=printed.moments.sum(axis=0),
             ballast_mm3=float(added_mm3) if ballast else 0.0,
-            stability=least(printed.stabilities),
+            stability=least_stable(printed.stabilities),
         )
         best = found if best is None else _better(best, found, lean)
         aim, tilt = density.aim_deg, tilt_toward(found.stability, lean)
@@ -117,10 +117,12 @@ def weighed_ballast(
 def stability_of_choice(program: Program, choice: Choice) -> Stability:
     """How a choice stands by its moments: its weakest body."""
     each = []
-    for (_, section, _), part in zip(program.standing(choice.base), choice.parts, strict=True):
+    for (_, section, _), part in zip(
+        program.bodies_on_base(choice.base), choice.parts, strict=True
+    ):
         x, y, z = (float(value) for value in part.moments[1:] / part.moments[0])
         each.append(balanced(contact_of(section), (x, y, z)))
-    return least(each)
+    return least_stable(each)
 
 
 def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean) -> float:
@@ -128,10 +130,10 @@ def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean)
     each = [
         balanced(contact_of(section), found.centre_of_mass_mm)
         for (_, section, _), found in zip(
-            program.standing(choice.base), printed.stabilities, strict=True
+            program.bodies_on_base(choice.base), printed.stabilities, strict=True
         )
     ]
-    tilt = tilt_toward(least(each), lean)
+    tilt = tilt_toward(least_stable(each), lean)
     assert tilt is not None  # a choice with a solution has contact
     return tilt
 

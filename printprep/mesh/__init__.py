@@ -1,1 +1,1 @@
-"""Triangles in mm: read, placed, made a solid, measured, written."""
+"""Triangle meshes in mm: reads, places, repairs, measures and writes them."""

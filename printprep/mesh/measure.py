@@ -1,9 +1,9 @@
-"""What can be said about a manifold exactly: arrays, integrals, distances, shells.
+"""Exact measures of manifolds and meshes: arrays, integrals, distances, shells.
 
 Notation: a, b, c the corners of a triangle seen counter-clockwise from outside, r a reference
-point; the signed tetrahedron (r, a, b, c) has volume V = det(a−r, b−r, c−r)/6.  Sums of such
-tetrahedra over a closed surface are the integrals over what it encloses (the divergence theorem);
-voids, being inverted shells, subtract themselves.
+point; the signed tetrahedron (r, a, b, c) has volume V = det(a−r, b−r, c−r)/6.  The sum of such
+tetrahedra over a closed surface is the integral over the space it encloses (divergence theorem);
+voids are inverted shells and so count negative.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
 
-# A shell's vertices are asked in which other shell they lie; so many, evenly spread over the list.
+# Vertices of a shell, evenly spread over its list, that decide in which other shell it lies.
 _WITNESSES = 64
 
 _STATUS = {
@@ -39,7 +39,7 @@ def arrays(manifold: Manifold) -> tuple[Float, Int]:
     mesh = manifold.to_mesh64()
     vertices = np.ascontiguousarray(mesh.vert_properties[:, :3], dtype=np.float64)
     faces = np.asarray(mesh.tri_verts).astype(np.int64)
-    if len(mesh.merge_from_vert):  # vertices split for their properties are one again
+    if len(mesh.merge_from_vert):  # join vertices that the kernel split for their properties
         joined = np.arange(len(vertices), dtype=np.int64)
         joined[np.asarray(mesh.merge_from_vert, dtype=np.int64)] = mesh.merge_to_vert
         used, index = np.unique(joined[faces], return_inverse=True)
@@ -48,7 +48,7 @@ def arrays(manifold: Manifold) -> tuple[Float, Int]:
 
 
 def try_manifold(vertices: Float, faces: Int) -> tuple[Manifold, str]:
-    """The manifold of a triangle mesh in float64, and its status by name ("NoError" is valid)."""
+    """The manifold of vertices (n, 3) mm and faces (m, 3), and its status ("NoError" is valid)."""
     from manifold3d import Manifold, Mesh64
 
     mesh = Mesh64(
@@ -65,7 +65,7 @@ def from_arrays(vertices: Float, faces: Int) -> Manifold:
 
     Raises
     ------
-    GeometryError : the faces do not bound a solid; the message says in what way.
+    GeometryError : the faces do not bound a solid; the message says why.
     """
     manifold, status = try_manifold(vertices, faces)
     if status != "NoError":
@@ -77,12 +77,12 @@ def from_arrays(vertices: Float, faces: Int) -> Manifold:
 def mass_properties(manifold: Manifold) -> MassProperties:
     """Volume, centre of mass and inertia about it, at unit density, exact up to rounding.
 
-    Raises GeometryError when the volume is not positive: an empty solid has no centre.
+    Raises GeometryError where the volume is not positive: there is no centre of mass then.
     """
     vertices, faces = arrays(manifold)
     if len(vertices) == 0:
         raise GeometryError("An empty solid has no volume and no centre of mass.")
-    # Measured from the middle of its own bounds, a part far from the origin loses no digits.
+    # The middle of the bounds as reference keeps all digits of a part far from the origin.
     reference = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     corners = (vertices - reference)[faces]
     volumes = signed_volumes(corners)
@@ -112,13 +112,21 @@ def signed_volumes(corners: Float) -> Float:
     return result
 
 
+def area_normals(corners: Float) -> Float:
+    """(m, 3) outward normals of triangles (m, 3 corners, 3 xyz), as long as twice their area."""
+    result: Float = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return result
+
+
 def winding(points: Float, vertices: Float, faces: Int) -> Float:
-    """(n,) generalized winding number of points (n, 3) about a triangle mesh, closed or not.
+    """(k,) generalized winding number of points (k, 3) about a triangle mesh, closed or not.
+
+    vertices : (n, 3) mm;  faces : (m, 3).  The number is 1 inside, 0 outside, 2 where two shells
+    overlap, and between these near an opening of the surface.
 
     Jacobson et al., "Robust inside-outside segmentation using generalized winding numbers", 2013,
     by the far-field expansion of Barill et al., "Fast winding numbers for soups and clouds", 2018
-    (error a few thousandths).  1 inside, 0 outside, 2 where two shells overlap, between where the
-    surface is open.
+    (error a few thousandths).
     """
     import igl
 
@@ -133,7 +141,10 @@ def winding(points: Float, vertices: Float, faces: Int) -> Float:
 
 
 def distance_to_mesh_mm(points: Float, vertices: Float, faces: Int) -> Float:
-    """(n,) unsigned exact distance of points (n, 3) mm to a triangle mesh, inf to an empty one."""
+    """(k,) mm, unsigned exact distance of points (k, 3) to a mesh, inf where it has no triangles.
+
+    vertices : (n, 3) mm;  faces : (m, 3).
+    """
     import igl
 
     if len(points) == 0 or len(faces) == 0:
@@ -148,20 +159,20 @@ def distance_to_mesh_mm(points: Float, vertices: Float, faces: Int) -> Float:
 
 
 def distance_mm(points: Float, manifold: Manifold) -> Float:
-    """(n,) unsigned exact distance of points (n, 3) mm to the surface, voids included."""
+    """(k,) mm, unsigned exact distance of points (k, 3) to the surface of a manifold, voids too."""
     return distance_to_mesh_mm(points, *arrays(manifold))
 
 
 def inverted(manifold: Manifold) -> Manifold:
-    """The same surface seen from the other side: a solid becomes a void, a void a solid."""
+    """The same surface turned inside out: a solid becomes a void, a void a solid."""
     vertices, faces = arrays(manifold)
     return from_arrays(vertices, faces[:, ::-1])
 
 
 def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ...]]:
-    """Its closed surfaces: those that bound material from outside, and its voids.
+    """The shells of a manifold: those that bound material from outside, and the voids.
 
-    Both as solids of positive volume: the voids come turned inside out.
+    All are returned as solids of positive volume: the voids are turned inside out.
     """
     parts = manifold.decompose()
     solids = tuple(part for part in parts if part.volume() >= 0)
@@ -170,7 +181,7 @@ def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ..
 
 
 def bodies(manifold: Manifold) -> tuple[Manifold, ...]:
-    """The disjoint bodies, each with the voids inside it, in the order of ``decompose``."""
+    """The bodies that do not touch, each with its voids, in the order of ``decompose``."""
     solids, voids = shells(manifold)
     owned: list[list[Manifold]] = [[solid] for solid in solids]
     for void in voids:
@@ -181,9 +192,9 @@ def bodies(manifold: Manifold) -> tuple[Manifold, ...]:
 
 
 def together(shells: Sequence[Manifold]) -> Manifold:
-    """Disjoint shells as one manifold, each as it is: voids stay voids.
+    """Disjoint shells as one manifold; a void stays a void.
 
-    (manifold3d's ``compose`` unites instead, and a void united with its solid is gone.)
+    (``compose`` of manifold3d unites them instead, and a void united with its solid disappears.)
     """
     every = [arrays(shell) for shell in shells]
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in every[:-1])])
@@ -194,7 +205,7 @@ def together(shells: Sequence[Manifold]) -> Manifold:
 
 
 def innermost(shell: Manifold, solids: Sequence[Manifold]) -> int | None:
-    """Index of the smallest solid that contains most of the shell's vertices, None if none does."""
+    """Index of the smallest solid that contains most vertices of the shell, None if none does."""
     vertices, _ = arrays(shell)
     witnesses = vertices[:: max(1, len(vertices) // _WITNESSES)]
     box = shell.bounding_box()

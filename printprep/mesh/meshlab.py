@@ -1,8 +1,8 @@
-"""The rung that mends the surface with MeshLab's filters, in a process of its own.
+"""The repair rung that uses MeshLab's filters, in a child process.
 
 Cignoni et al., "MeshLab: an open-source mesh processing tool", 2008.  The library can crash or
-hang on a broken mesh, and needs the system's libGL to load at all; neither may take printprep
-down with it.
+hang on a broken mesh, and loads only where the system has libGL; a child process keeps printprep
+safe from all three.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TIMEOUT_S = 120.0
 
 
 class _ChildError(Exception):
-    """The process gave no mesh; ``final`` when no other recipe could fare better."""
+    """The child gave no mesh; ``final`` where no other recipe would help."""
 
     def __init__(self, reason: str, *, final: bool) -> None:
         super().__init__(reason)
@@ -38,7 +38,10 @@ class _ChildError(Exception):
 
 
 def mended(vertices: Float, faces: Int) -> Iterator[Candidate | Refusal]:
-    """What the filters make of the mesh, the gentlest recipe first, or why they make nothing."""
+    """The solid that each recipe of filters makes, the gentlest first, or why it makes none.
+
+    vertices : (n, 3) mm;  faces : (m, 3).
+    """
     for recipe in meshlab_child.RECIPES:
         try:
             corners, triangles = _run(vertices, faces, recipe)
@@ -50,27 +53,29 @@ def mended(vertices: Float, faces: Int) -> Iterator[Candidate | Refusal]:
         turned, actions = right_side_out(corners, triangles)
         candidate = united(corners, turned)
         if isinstance(candidate, Candidate):
-            said = (_sentence(faces, turned), *actions, *candidate.actions)
-            candidate = replace(candidate, actions=said)
+            done = (_sentence(faces, turned), *actions, *candidate.actions)
+            candidate = replace(candidate, actions=done)
         yield candidate
 
 
 def _sentence(before: Int, after: Int) -> str:
+    """What the filters did to faces (m, 3), in words."""
     edges = edge_counts(before)
     return (
-        f"Mended the surface with MeshLab's filters: {edges.open_edges} open and "
-        f"{edges.crowded_edges} crowded edges, {len(before)} triangles became {len(after)}."
+        f"Repaired the surface with MeshLab's filters: it had {edges.open_edges} open edges and "
+        f"{edges.crowded_edges} edges with more than two faces; {len(before)} triangles became "
+        f"{len(after)}."
     )
 
 
 def _run(vertices: Float, faces: Int, recipe: str) -> tuple[Float, Int]:
-    """The mended mesh, welded; raises _ChildError."""
+    """The filtered mesh, welded: (n, 3) mm and (m, 3), as the arguments.  Raises _ChildError."""
     if not sys.executable:
-        raise _ChildError("there is no Python to start it with", final=True)
+        raise _ChildError("there is no Python to start MeshLab with", final=True)
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder) / "given.npz", Path(folder) / "mended.npz"
         np.savez(source, vertices=vertices, faces=faces)
-        # -P keeps this folder off the child's path, where its modules would shadow others.
+        # -P keeps this folder off the child's path: its modules would hide others.
         command = [sys.executable, "-P", meshlab_child.__file__, str(source), str(target), recipe]
         try:
             done = subprocess.run(

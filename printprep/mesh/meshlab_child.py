@@ -1,8 +1,8 @@
-"""The half of the meshlab rung that runs in a process of its own: it can crash or hang alone.
+"""The part of the meshlab rung that runs in a child process, which may crash or hang.
 
-Started as a script with two paths and a recipe: a .npz to read (vertices, faces), one to write.
-It imports nothing of printprep, so that it needs no package path.  Exit status: 0 done, 3 pymeshlab
-cannot be loaded here, 4 the filters refused the mesh; the reason is the last line on stderr.
+Arguments of this script: a .npz to read (vertices (n, 3) mm, faces (m, 3)), one to write, and a
+recipe.  It imports nothing of printprep, so that it needs no package path.  Exit status: 0 done,
+3 pymeshlab cannot be loaded, 4 the filters refused the mesh; the reason is the last line on stderr.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ CANNOT_LOAD = 3
 REFUSED = 4
 RECIPES = ("holes", "cracks")  # gentlest first
 
-# Corners this close, in percent of the bounding box's diagonal, are the two sides of a crack.
+# Corners this close, in percent of the bounding box's diagonal, are two sides of a crack.
 _CRACK_PERCENT = 0.005
-# Longest hole that is closed, in boundary edges; whether closing it was right the caller judges.
+# Longest hole that is closed, in boundary edges; the caller judges whether closing it was right.
 _LONGEST_HOLE = 100_000
 
 
@@ -43,10 +43,13 @@ def main(source: str, target: str, recipe: str) -> int:
 
 
 def mend(meshes: Any, recipe: str, crack: Any) -> None:
-    """Drop what no solid can have, turn faces alike, close holes; "cracks" joins their sides."""
+    """Remove faces that no solid has, orient the others alike, close holes.
+
+    The recipe "cracks" first joins the sides of cracks.
+    """
     if recipe == "cracks":
         meshes.meshing_merge_close_vertices(threshold=crack)
-    # Faces without area stay: they hold the surface together where edges meet in a T.
+    # Faces without area stay: they connect the surface where edges meet in a T.
     meshes.meshing_remove_duplicate_faces()
     _two_manifold(meshes)
     meshes.meshing_re_orient_faces_coherently()
@@ -61,7 +64,7 @@ def mend(meshes: Any, recipe: str, crack: Any) -> None:
 
 
 def _two_manifold(meshes: Any) -> None:
-    """No edge with three faces, no vertex where two fans touch; cutting can leave either again."""
+    """Remove edges with three faces and vertices shared by two fans; each cut can make new ones."""
     for _ in range(3):
         meshes.meshing_repair_non_manifold_edges(method="Remove Faces")
         meshes.meshing_repair_non_manifold_vertices(vertdispratio=0.0)

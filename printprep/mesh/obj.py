@@ -1,7 +1,7 @@
-"""Wavefront OBJ: the positions and the faces, nothing else.
+"""Reads Wavefront OBJ: positions and faces only.
 
-Read here and not by trimesh, because trimesh drops faces it cannot use, takes index 0 for the last
-vertex and opens the material files a model names; a refusal must say which line is wrong.
+printprep has its own reader because trimesh drops faces it cannot use, takes index 0 for the last
+vertex and opens the material files that a model names; and because an error names the line.
 Format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 """
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 def read_obj(data: bytes, what: str) -> tuple[Float, Int]:
     """Vertices (n, 3) float64 in the file's unit and triangles (m, 3) int64 into them.
 
-    Polygons are cut into a fan from their first corner.  Vertex colours, texture coordinates,
-    normals, groups, lines and curves are passed over.
+    what : the file's name in errors.  A polygon becomes a fan of triangles from its first corner.
+    Vertex colours, texture coordinates, normals, groups, lines and curves are ignored.
 
     Raises
     ------
@@ -51,14 +51,15 @@ def read_obj(data: bytes, what: str) -> tuple[Float, Int]:
         raise _malformed(
             what,
             lines[int(beyond[0])],
-            f"a face names vertex {int(triangles[beyond[0]].max()) + 1} of {len(vertices)}",
+            f"a face uses vertex {int(triangles[beyond[0]].max()) + 1}, the file has "
+            f"{len(vertices)}",
         )
     return np.array(vertices, dtype=np.float64).reshape(-1, 3), triangles
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, str]]:
-    """Lines with their numbers, those that end in a backslash with the ones they go on in."""
-    # Latin-1 decodes every byte; only names can hold others, and they are not used.
+    """Lines with their numbers; a line that ends in a backslash is joined with the next."""
+    # Latin-1 decodes every byte; only names can hold more than ASCII, and they are not used.
     text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
     begun = ""
     for number, line in enumerate(text.split("\n"), start=1):
@@ -77,16 +78,16 @@ def _vertex(words: list[str], what: str, number: int) -> tuple[float, float, flo
 
 
 def _corners(words: list[str], so_far: int, what: str, number: int) -> list[int]:
-    """Zero-based vertex indices of a face; negative ones in the file count back from the last."""
+    """Zero-based vertex indices of a face; negative numbers in the file count from the last."""
     try:
         named = [int(word.partition("/")[0]) for word in words[1:]]
     except ValueError as error:
         raise _malformed(what, number, "a corner of a face is not a whole number") from error
     if len(named) < 3:
-        raise _malformed(what, number, f"a face has {len(named)} corners instead of three or more")
+        raise _malformed(what, number, f"a face has {len(named)} corners, it needs three or more")
     indices = [index - 1 if index > 0 else so_far + index for index in named]
     if 0 in named or min(indices) < 0:
-        raise _malformed(what, number, "a face names a vertex before the first")
+        raise _malformed(what, number, "a face uses a vertex before the first")
     return indices
 
 

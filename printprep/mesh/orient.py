@@ -1,6 +1,6 @@
-"""Which side of each face is outside: faces turned alike, shells turned right side out.
+"""Turns faces so that neighbours agree, and shells so that their outside faces outward.
 
-No vertex moves here and no face comes or goes; only the order of corners changes.
+Only the order of corners changes: no vertex moves, and no face is added or removed.
 """
 
 from __future__ import annotations
@@ -10,21 +10,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import signed_volumes, winding
+from printprep.mesh.measure import area_normals, signed_volumes, winding
 from printprep.mesh.weld import components, directed_edges, edge_counts
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
 
-# |V| / A^1.5 is 0.094 for a sphere.  An open piece below this is a sheet: it has no inside.
+# |V| / A^1.5 is 0.094 for a sphere.  An open piece below this value is a sheet: it has no inside.
 _SHEET = 0.01
-_WITNESSES = 64
+_WITNESSES = 64  # vertices of a piece that decide inside which others it lies
 
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """A piece of surface that hangs together by edges; ``volume`` about its own centre, mm³."""
+    """A piece of surface connected by edges.
+
+    faces : (m, 3);  low, high : (3,) mm, its bounding box;  witnesses : (k, 3) mm, some vertices;
+    volume : mm³, about its own centre;  sheet : it has no inside.
+    """
 
     faces: Int
     low: Float
@@ -37,13 +42,15 @@ class _Piece:
 def right_side_out(vertices: Float, faces: Int) -> tuple[Int, tuple[str, ...]]:
     """Faces (m, 3) turned so that each shell bounds material, and sentences on what was turned.
 
-    Within a piece the orientation of the larger area wins.  Between pieces a shell that is inside
-    out (negative volume) is a void when the smallest shell around it bounds material, and was
-    meant the other way round when nothing is around it or it lies in a void already.  A model all
-    of whose outermost shells are inside out is turned as a whole, so that its voids stay voids.
+    vertices : (n, 3) mm.  Within a piece the orientation of the larger area wins.  A shell that is
+    inside out (negative volume) is a void where the smallest shell around it bounds material; it is
+    turned where no shell is around it or it lies in a void.  A model whose outermost shells are all
+    inside out is turned as a whole, so that its voids stay voids.
     """
     alike, turned = _turned_alike(vertices, faces)
-    actions = [f"Turned {turned} faces to agree with their neighbours."] if turned else []
+    actions = []
+    if turned:
+        actions.append(f"Turned {counted(turned, 'face')} to agree with the neighbouring faces.")
     groups = components(alike, len(vertices))
     pieces = [_piece(vertices, alike[group]) for group in groups]
     around = _around(pieces, vertices)
@@ -56,12 +63,15 @@ def right_side_out(vertices: Float, faces: Int) -> tuple[Int, tuple[str, ...]]:
     for index in flipped:
         alike[groups[index]] = alike[groups[index]][:, ::-1]
     if flipped:
-        actions.append(f"Turned {_count(len(flipped), 'shell')} right side out.")
+        actions.append(f"Turned {counted(len(flipped), 'shell')} right side out.")
     return np.ascontiguousarray(alike), tuple(actions)
 
 
 def _misplaced(pieces: list[_Piece], around: list[list[int]], sign: int) -> list[int]:
-    """Pieces that are inside out where no void can be, given the sign all others are read with."""
+    """Indices of the pieces that are inside out where no void can be.
+
+    around : for each piece, those it lies in;  sign : −1 where the whole model is inside out.
+    """
     signs = {}
     flipped = []
     for index in sorted(range(len(pieces)), key=lambda i: (-abs(pieces[i].volume), i)):
@@ -77,7 +87,7 @@ def _misplaced(pieces: list[_Piece], around: list[list[int]], sign: int) -> list
 
 
 def _turned_alike(vertices: Float, faces: Int) -> tuple[Int, int]:
-    """Faces turned to agree across every edge that has just two, and how many were turned."""
+    """Faces (m, 3) that agree across every edge with exactly two, and how many were turned."""
     edges = directed_edges(faces)
     _, index, count = np.unique(
         np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
@@ -88,25 +98,22 @@ def _turned_alike(vertices: Float, faces: Int) -> tuple[Int, int]:
     import igl
 
     turned, patch = igl.bfs_orient(faces)
-    # bfs_orient starts each patch from an arbitrary face: keep the side the larger area was on.
+    # bfs_orient starts each patch from an arbitrary face: keep the orientation of the larger area.
     changed = (turned != faces).any(axis=1)
-    corners = vertices[faces]
-    area = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
+    area = np.linalg.norm(area_normals(vertices[faces]), axis=1)
     against = np.bincount(patch, weights=area * changed) > np.bincount(patch, weights=area) / 2
     result = np.where(against[patch][:, None], turned[:, ::-1], turned)
-    # Turning twice reverses the order of corners, which may leave the same face written otherwise.
+    # Turning a face twice may leave it with another first corner: such faces stay as they were.
     same = changed == against[patch]
     result = np.where(same[:, None], faces, result)
     return np.ascontiguousarray(result, dtype=np.int64), int((~same).sum())
 
 
 def _piece(vertices: Float, faces: Int) -> _Piece:
+    """The piece with faces (m, 3) of the whole mesh's vertices (n, 3) mm."""
     used = vertices[np.unique(faces)]
     corners = (vertices - used.mean(axis=0))[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = float(np.linalg.norm(normals, axis=1).sum()) / 2
+    area = float(np.linalg.norm(area_normals(corners), axis=1).sum()) / 2
     volume = float(signed_volumes(corners).sum())
     return _Piece(
         faces=faces,
@@ -119,7 +126,10 @@ def _piece(vertices: Float, faces: Int) -> _Piece:
 
 
 def _around(pieces: list[_Piece], vertices: Float) -> list[list[int]]:
-    """For each piece, the indices of the larger ones that most of its vertices lie inside of."""
+    """For each piece, the indices of the larger ones that contain most of its vertices.
+
+    vertices : (n, 3) mm, of the whole mesh.
+    """
     solid = [index for index, piece in enumerate(pieces) if not piece.sheet]
     low = np.array([pieces[index].low for index in solid]).reshape(-1, 3)
     high = np.array([pieces[index].high for index in solid]).reshape(-1, 3)
@@ -134,7 +144,3 @@ def _around(pieces: list[_Piece], vertices: Float) -> list[list[int]]:
             if 2 * int(inside.sum()) > len(inside):
                 found[-1].append(index)
     return found
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

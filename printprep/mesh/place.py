@@ -1,4 +1,4 @@
-"""From the file's coordinates to the printer's: up is +z, sizes are mm, the bed is z = 0."""
+"""Places a mesh on the printer's bed: z is up, sizes are mm, the bed is z = 0."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from printprep.mesh.read import RawMesh
 
 
-# Proper rotations (determinant +1) by quarter turns that take the named file axis to +z.  About x
-# for ±y, about y for ±x, half a turn about x for −z: the shortest turn in each case.
+# Proper rotations (determinant +1) by quarter turns that take the named file axis to +z: about x
+# for ±y, about y for ±x, half a turn about x for −z, the shortest turn in each case.
 _TURNS: dict[str, tuple[tuple[int, int, int], ...]] = {
     "+x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
     "-x": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
@@ -36,7 +36,7 @@ def rotation(up: str) -> Float:
     turn = _TURNS.get(axis if axis[:1] in ("+", "-") else f"+{axis}")
     if turn is None:
         raise UsageError(
-            f"--up {up!r} names no axis.", "Use x, y or z, with + or − before it, for example +y."
+            f"--up {up!r} is not an axis.", "Use x, y or z, with + or − before it, for example +y."
         )
     return np.array(turn, dtype=np.float64)
 
@@ -49,15 +49,15 @@ def place(
     height_mm: float | None = None,
     size_mm: float | None = None,
 ) -> Model:
-    """Turn, scale and seat a mesh: bounding box centred on x = y = 0, lowest point on z = 0.
+    """Turn, scale and move a mesh: bounding box centred on x = y = 0, lowest point at z = 0.
 
-    up : the axis of the mesh that shall point up.  At most one of ``scale`` (a factor),
-    ``height_mm`` (extent along z once turned) and ``size_mm`` (longest side of the bounding box).
+    up : the axis of the mesh that points up on the bed.  At most one of ``scale`` (a factor),
+    ``height_mm`` (extent along z after turning) and ``size_mm`` (longest side of the bounding box).
 
     Raises
     ------
-    UsageError : two of them at once, one that is not a positive number, an unknown axis, or a
-        height asked of a mesh that has none.
+    UsageError : two of these at once, one that is not a positive number, an unknown axis, or a
+        height for a mesh that is flat.
     """
     turn = rotation(up)
     turned = raw.vertices @ turn.T
@@ -80,6 +80,7 @@ def place(
 def _factor(
     extents: Float, scale: float | None, height_mm: float | None, size_mm: float | None
 ) -> float:
+    """The factor that one of the three arguments asks for; extents : (3,), after turning."""
     given = {
         name: value
         for name, value in (("--scale", scale), ("--height", height_mm), ("--size", size_mm))
@@ -102,5 +103,5 @@ def _factor(
     if target is None:
         return 1.0
     if extent <= 0:
-        raise UsageError(f"The model has no {what} to scale to {target:g} mm: it is flat.")
+        raise UsageError(f"The model is flat: it has no {what} that could become {target:g} mm.")
     return float(target) / extent

@@ -1,8 +1,8 @@
-"""The part as a file will hold it: float32 coordinates, welded, still one clean manifold.
+"""Rounds a part to what a file holds: float32 coordinates, welded, still one clean manifold.
 
-Files keep single precision (STL and PLY by their format, slicers once they have read a 3MF), and
-readers weld what falls on one point.  Both can break a mesh that was sound in double precision, so
-the part is brought into that form first, and everything is judged and written from it.
+Files keep single precision (STL and PLY by their format, slicers after reading a 3MF), and readers
+weld vertices that fall on one point.  Both can break a mesh that is sound in double precision.  So
+the part is rounded first, and all checks and files start from the rounded part.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.mesh.measure import arrays, from_arrays, together
+from printprep.mesh.measure import area_normals, arrays, from_arrays, together
 from printprep.mesh.weld import directed_edges, drop_collapsed
 
 if TYPE_CHECKING:
@@ -20,41 +20,41 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-# A shell this thin on the mean and this small is what rounding leaves of a sliver, never a feature.
+# A shell with this mean thickness and this volume is the rest of a rounded sliver, not a feature.
 _FLAT_SHELL_MM = 0.01
 _FLAT_SHELL_MM3 = 0.5
-# Surfaces that touch are drawn apart by this much, several float32 steps at any printable size.
+# Surfaces that touch are moved apart by this much, several float32 steps at any printable size.
 _APART_MM = 2e-4
-# What a try merges first; the last stays below the thousandth that the outside may move.
+# Tolerance of each attempt's simplification; all stay below the 0.001 mm that the outside may move.
 _MERGED_MM = (2e-5, 5e-5, 1e-4, 2e-4, 4e-4)
 _NUDGE = "A slightly different size (--size) usually avoids it."
 
 
 def quantized(manifold: Manifold) -> Manifold:
-    """The manifold whose vertices, welded, are exactly what a file of float32 holds.
+    """The manifold whose welded vertices are exactly what a float32 file holds.
 
-    Vertices move by at most half a float32 step (8e-6 mm at 200 mm), and where two stretches of
-    surface touch along an edge, apart by less than 0.001 mm.  Flat shells (on the mean thinner than
-    0.01 mm, and below 0.5 mm³) are dropped.  Applied to its own result it changes nothing.
+    Vertices move by at most half a float32 step (8e-6 mm at 200 mm); where two surfaces touch along
+    an edge they move apart, by less than 0.001 mm.  Flat shells (mean thickness below 0.01 mm and
+    volume below 0.5 mm³) are removed.  Applied to its own result it changes nothing.
 
-    Raises GeometryError where no such form was found.
+    Raises GeometryError where no such form is found.
     """
     for tolerance_mm in _MERGED_MM:
         vertices, faces = quantized_arrays(manifold)
         if not len(crowded_edges(faces)):
             return _without_flat_shells(_rebuilt(vertices, faces))
-        # Edges shorter than a float32 step fold triangles over when their ends are welded.
-        manifold = _drawn_apart(manifold.simplify(tolerance_mm))
+        # Welding the ends of an edge shorter than a float32 step folds triangles over.
+        manifold = _moved_apart(manifold.simplify(tolerance_mm))
     raise GeometryError(
-        "The part touches itself along an edge and could not be drawn apart.", _NUDGE
+        "The part touches itself along an edge and cannot be moved apart there.", _NUDGE
     )
 
 
 def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     """Vertices rounded to float32 and welded, and the triangles that still have three corners.
 
-    Returns (n, 3) float64 that hold float32 values, in lexicographic order, and (m, 3) int64,
-    counter-clockwise from outside, each starting at its smallest index, sorted: the same solid
+    Returns (n, 3) float64 mm with float32 values, in lexicographic order, and (m, 3) int64,
+    counter-clockwise seen from outside, each from its smallest index on, sorted: the same solid
     gives the same arrays.
     """
     points, corners = arrays(manifold)
@@ -69,7 +69,7 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
 
 
 def crowded_edges(faces: Int) -> Int:
-    """Directed edges (k, 2) that do not occur exactly once with exactly one opposite."""
+    """(k, 2) directed edges of faces (m, 3) that do not occur once with exactly one opposite."""
     if not len(faces):
         return np.zeros((0, 2), dtype=np.int64)
     edges = directed_edges(faces)
@@ -85,11 +85,12 @@ def crowded_edges(faces: Int) -> Int:
 
 
 def _rebuilt(vertices: Float, faces: Int) -> Manifold:
+    """The manifold of rounded vertices (n, 3) mm and faces (m, 3)."""
     try:
         return from_arrays(vertices, faces)
     except GeometryError as error:
         raise GeometryError(
-            f"Rounded to what a file can hold, the part is broken: {error.message}", _NUDGE
+            f"The part breaks when its coordinates are rounded for a file: {error.message}", _NUDGE
         ) from error
 
 
@@ -97,7 +98,7 @@ def _without_flat_shells(manifold: Manifold) -> Manifold:
     shells = manifold.decompose()
     kept = [shell for shell in shells if not _is_flat(shell)]
     if not kept:
-        raise GeometryError("Nothing of the part is left once its coordinates are rounded.")
+        raise GeometryError("Nothing of the part is left when its coordinates are rounded.")
     return manifold if len(kept) == len(shells) else together(kept)
 
 
@@ -106,19 +107,19 @@ def _is_flat(shell: Manifold) -> bool:
     return bool(volume < _FLAT_SHELL_MM3 and 2 * volume < _FLAT_SHELL_MM * area)
 
 
-def _drawn_apart(manifold: Manifold) -> Manifold:
-    """Vertices that share their place with another move a little along their own normal.
+def _moved_apart(manifold: Manifold) -> Manifold:
+    """The manifold with vertices that share a position moved a little along their own normals.
 
-    They move to the side their own fan of triangles bends to: into the material of a ridge, into
-    the void of a groove, so that what touched draws back on both sides.  The kernel's own topology
-    is kept, which welding would have lost: there each of the touching edges has its own vertices.
+    Each moves to the side that its fan of triangles bends to: into the material of a ridge, into
+    the void of a groove, so that both touching surfaces draw back.  This works on the manifold as
+    the kernel has it, where each of two touching edges has its own vertices; welding joins them.
     """
     exact, faces = arrays(manifold)
     points = exact.astype(np.float32).astype(np.float64)
     _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
     shared = counts[np.ravel(index)] > 1
     corners = points[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(corners)
     area = np.linalg.norm(normals, axis=1, keepdims=True)
     normal, bend = np.zeros_like(points), np.zeros_like(points)
     for corner in range(3):

@@ -1,8 +1,7 @@
-"""From a file to triangles in mm: every format, every unit, every refusal.
+"""Reads a mesh file of any supported format and unit into triangles in mm.
 
-STL and OBJ are read by readers of our own (they say what is wrong and where), PLY and GLB by
-trimesh, 3MF by our own strict-on-safety reader.  Whatever the source, what comes out is welded,
-finite, in millimetres and z-up.
+printprep reads STL, OBJ and 3MF itself (its errors name what is wrong and where), and PLY and GLB
+with trimesh.  The result is always welded, finite, in millimetres and with z up.
 """
 
 from __future__ import annotations
@@ -17,9 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep.errors import InputError, UsageError
+from printprep.files import reason_of
 from printprep.mesh.obj import read_obj
 from printprep.mesh.stl import read_stl
 from printprep.mesh.weld import weld
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
@@ -31,7 +32,7 @@ MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 # glTF 2.0, 3.6.1: "+Y up"; here z is up, so y → z and z → −y (a quarter turn about x).
 _GLTF_TO_Z_UP = np.array(((1, 0, 0), (0, 0, -1), (0, 1, 0)), dtype=np.float64)
 
-# What trimesh's readers raise on a file they cannot make sense of.
+# Exceptions that trimesh's readers raise on a malformed file.
 _UNREADABLE = (
     ArithmeticError,
     AssertionError,
@@ -53,11 +54,11 @@ _UNREADABLE = (
 
 @dataclass(frozen=True, eq=False)
 class RawMesh:
-    """Triangles of a file in mm and z-up, welded, where the file put them.
+    """Triangles of a file in mm, z up, welded, at the position that the file gives them.
 
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64;  name : the file's stem.
     from_file : (4, 4) float64, coordinates in the file (its unit, its axes) → ``vertices``.
-    up_hint : "+y" when the format itself says that y is up (already turned here), else None.
+    up_hint : "+y" where the format defines y as up (``vertices`` are turned already), else None.
     """
 
     vertices: Float
@@ -68,15 +69,15 @@ class RawMesh:
 
 
 def read_mesh(path: Path, units: str | None = None) -> RawMesh:
-    """The triangles of ``path``, all bodies of it as one mesh.
+    """The triangles of the file ``path``, all its bodies as one mesh.
 
-    units : mm, cm, m or in, the length one unit of the file stands for.  Without it a 3MF says so
-        itself, GLB is in metres by its standard, and everything else is taken for mm.
+    units : mm, cm, m or in, the length of one unit of the file.  Without it a 3MF names its unit,
+        GLB is in metres by its standard, and all other files are taken to be in mm.
 
     Raises
     ------
-    InputError : missing, unreadable, not a mesh format, malformed, empty, or with coordinates
-        that are not finite.
+    InputError : the file is missing, unreadable, not a mesh format, malformed or empty, or has
+        coordinates that are not finite.
     UsageError : an unknown unit.
     """
     path = Path(path)
@@ -86,7 +87,7 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
         raise InputError(f"{path} is a folder, not a file.", "Name the model file inside it.")
     if suffix not in SUFFIXES:
         raise InputError(
-            f"{path} is of no format known here: its suffix is {path.suffix or 'missing'}.",
+            f"{path} has an unknown format: its suffix is {path.suffix or 'missing'}.",
             f"Use a mesh with one of {', '.join(SUFFIXES)}.",
         )
     data = _bytes_of(path)
@@ -107,11 +108,11 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
 
 
 def from_trimesh(mesh: Any, name: str = "model", units: str | None = None) -> RawMesh:
-    """The same from a ``trimesh.Trimesh`` or ``Scene`` in memory, axes as they are.
+    """The triangles of a ``trimesh.Trimesh`` or ``Scene``, all bodies as one mesh, axes unchanged.
 
     units : as in ``read_mesh``; without it the mesh's own ``units`` if it has any, else mm.
 
-    Raises InputError when it holds no triangles or coordinates that are not finite.
+    Raises InputError where it holds no triangles, or coordinates that are not finite.
     """
     _check_units(units)
     vertices, faces = _arrays_of(mesh, name)
@@ -122,7 +123,7 @@ def from_trimesh(mesh: Any, name: str = "model", units: str | None = None) -> Ra
 def _check_units(units: str | None) -> None:
     if units is not None and units not in MM_PER_UNIT:
         raise UsageError(
-            f"--units {units!r} is no unit known here.", f"Use one of {', '.join(MM_PER_UNIT)}."
+            f"--units {units!r} is not a known unit.", f"Use one of {', '.join(MM_PER_UNIT)}."
         )
 
 
@@ -133,8 +134,8 @@ def _bytes_of(path: Path) -> bytes:
         raise InputError(f"{path} does not exist.", "Check the name and the folder.") from error
     except OSError as error:
         raise InputError(
-            f"{path} cannot be read: {error.strerror or type(error).__name__}.",
-            "Check that the file may be read.",
+            f"{path} cannot be read: {reason_of(error)}.",
+            "Check that you have permission to read the file.",
         ) from error
     if not data:
         raise InputError(f"{path} is empty: 0 bytes.", "Export or download the file again.")
@@ -142,9 +143,10 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _through_trimesh(data: bytes, suffix: str, path: Path) -> tuple[Float, Int]:
+    """Vertices (n, 3) in the file's unit and triangles (m, 3), read by trimesh."""
     import trimesh
 
-    # Only a .gltf needs its neighbours (its buffers); the resolver refuses to leave the folder.
+    # Only a .gltf needs other files (its buffers); the resolver never leaves the folder.
     resolver = trimesh.resolvers.FilePathResolver(str(path)) if suffix == ".gltf" else None
     try:
         with np.errstate(all="ignore"):
@@ -155,18 +157,21 @@ def _through_trimesh(data: bytes, suffix: str, path: Path) -> tuple[Float, Int]:
     except _UNREADABLE as error:
         raise InputError(
             f"{path} cannot be read as {suffix[1:].upper()}: {_one_line(error)}.",
-            "Export the model again, or in another format.",
+            "Export the model again, or export it in another format.",
         ) from error
 
 
 def _arrays_of(mesh: Any, what: str) -> tuple[Float, Int]:
-    """Vertices and triangles of a trimesh object; a scene's bodies under their transforms."""
+    """Vertices (n, 3) and triangles (m, 3) of a trimesh object; a scene's bodies are placed."""
     if hasattr(mesh, "to_mesh"):  # a Scene
         mesh = mesh.to_mesh()
     vertices = np.array(getattr(mesh, "vertices", ()), dtype=np.float64).reshape(-1, 3)
     faces = np.array(getattr(mesh, "faces", ()), dtype=np.int64).reshape(-1, 3)
     if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
-        raise InputError(f"{what} has a face that names a vertex which does not exist.")
+        raise InputError(
+            f"{what} has a face that uses a vertex which does not exist.",
+            "Export the model again, or export it in another format.",
+        )
     return vertices, faces
 
 
@@ -180,8 +185,8 @@ def _own_unit_mm(mesh: Any) -> float:
         return float(trimesh.units.unit_conversion(unit, "mm"))
     except (KeyError, ValueError) as error:
         raise InputError(
-            f"The mesh is in {unit!r}, a unit unknown here.",
-            f"Set mesh.units, or pass units, one of {', '.join(MM_PER_UNIT)}.",
+            f"The unit of the mesh, {unit!r}, is not known.",
+            f"Set mesh.units, or pass units, to one of {', '.join(MM_PER_UNIT)}.",
         ) from error
 
 
@@ -189,7 +194,7 @@ def _read_3mf(path: Path, units: str | None) -> RawMesh:
     from printprep.threemf.read import read_3mf
 
     found = read_3mf(path)
-    # Its vertices are in mm already; file coordinates are those of its build, in its own unit.
+    # The vertices are in mm already; file coordinates are those of the build, in the file's unit.
     factor = MM_PER_UNIT[units] / found.unit_mm if units else 1.0
     raw = _raw(found.vertices, found.faces, path.stem, factor * np.eye(3), str(path), None)
     return replace(raw, from_file=raw.from_file @ np.diag([*3 * [found.unit_mm], 1.0]))
@@ -198,7 +203,10 @@ def _read_3mf(path: Path, units: str | None) -> RawMesh:
 def _raw(
     vertices: Float, faces: Int, name: str, linear: Float, what: str, up_hint: str | None
 ) -> RawMesh:
-    """Check, convert by the 3×3 ``linear``, and weld."""
+    """Check, convert and weld vertices (n, 3) in the file's unit and faces (m, 3).
+
+    linear : (3, 3), the file's unit and axes → mm and z up.
+    """
     if len(faces) == 0:
         raise InputError(
             f"{what} holds no triangles.", "Export the surface of the model, not its outline."
@@ -207,8 +215,8 @@ def _raw(
     bad = int((~np.isfinite(used)).any(axis=1).sum())
     if bad:
         raise InputError(
-            f"{what} has {bad} corner{'s' if bad > 1 else ''} whose coordinates are not finite "
-            "numbers (NaN or infinite).",
+            f"{what} has {counted(bad, 'corner')} whose coordinates are not finite numbers (NaN "
+            "or infinite).",
             "Repair or export the model again.",
         )
     from_file = np.eye(4)
@@ -216,8 +224,8 @@ def _raw(
     welded, kept = weld(vertices, faces)
     if len(kept) == 0:
         raise InputError(
-            f"{what} holds no triangles: the corners of each coincide.",
-            "Check the units and the precision it was exported with.",
+            f"{what} holds no triangles with three different corners.",
+            "Check the units and the precision of the export.",
         )
     return RawMesh(welded @ linear.T, kept, name, from_file, up_hint)
 

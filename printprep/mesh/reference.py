@@ -1,11 +1,11 @@
-"""What space a mesh encloses, however broken it is: the yardstick each rung of repair is held to.
+"""Measures the space that a mesh encloses, however broken: the reference for each repair rung.
 
 The generalized winding number w is sampled at jittered points: vertical lines, one per cell of a
-grid over x and y, and on each line one point in every of m equal heights.  {w > ½} is the solid
-meant.  Where ¼ < w < ¾ the surface is open and how to close it is a matter of choice; elsewhere
-the mesh has decided, and a repair must agree with it.
+grid over x and y, and on each line one point in each of m equal intervals of height.  {w > ½} is
+the solid that the mesh describes.  Where ¼ < w < ¾ the surface is open, and there is more than one
+way to close it; elsewhere the mesh is unambiguous, and a repair must agree with it.
 
-Error of the sampled volume, for cells of a × a × b and m b = H: only cells the surface crosses
+Error of the sampled volume, for cells of a × a × b and m b = H: only cells that the surface crosses
 count, each with a variance of at most a quarter of its square.  A horizontal area A_z crosses
 A_z/a² cells; a vertical one, A_x + A_y by its projections, (A_x + A_y)/(a b), m of which share
 their line.  So σ² ≤ ¼ (a²b)² (A_z/a² + m (A_x + A_y)/(a b)) = ¼ a²b² (A_z + m a (A_x + A_y)/b).
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import area_normals, arrays
 from printprep.mesh.winding_columns import winding_in_columns
 
 if TYPE_CHECKING:
@@ -31,17 +31,22 @@ _COLUMNS = 120**2
 _HEIGHTS = 8
 _SEED = 20130721
 _UNDECIDED = (0.25, 0.75)
-# Material two descriptions of one solid may differ by.  Half a percent is a tenth of what the
-# flow of a filament printer varies by, and more than any closed model here deviates (0.06 %).
+# Share of the volume by which two descriptions of one solid may differ.  Half a percent is a tenth
+# of the variation in a filament printer's flow, and more than any closed test model deviates
+# (0.06 %).
 _SHARE = 0.005
 _SIGMAS = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """columns : (c, 2) mm;  z_mm : (c, m) heights on each;  winding : (c, m);  cell_mm3 : volume
-    each point stands for;  volume_mm3 : of {w > ½};  undecided_mm3 : of {¼ < w < ¾};  sigma_mm3 :
-    bound on the standard deviation of ``volume_mm3``."""
+    """Sampled winding numbers of a mesh, and the volumes that follow.
+
+    columns : (c, 2) mm;  z_mm : (c, m) heights on each column;  winding : (c, m);
+    cell_mm3 : volume of the cell around each point;  volume_mm3 : of {w > ½};
+    undecided_mm3 : of {¼ < w < ¾};  sigma_mm3 : upper bound of the standard deviation of
+    ``volume_mm3``.
+    """
 
     columns: Float
     z_mm: Float
@@ -58,9 +63,7 @@ class Reference:
         columns, z = _jittered(low, extents)
         cell = float(np.prod(extents)) / z.size
         w = _winding(vertices, faces, columns, z)
-        corners = vertices[faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        area_x, area_y, area_z = np.abs(normals).sum(axis=0) / 2
+        area_x, area_y, area_z = np.abs(area_normals(vertices[faces])).sum(axis=0) / 2
         a2, b = float(np.prod(extents[:2])) / len(columns), float(extents[2]) / _HEIGHTS
         upright = _HEIGHTS * np.sqrt(a2) / b * (area_x + area_y)
         return Reference(
@@ -74,16 +77,16 @@ class Reference:
         )
 
     def disagreement(self, manifold: Manifold, slack_mm3: float = 0.0) -> str | None:
-        """Why a solid is not what the mesh encloses, or None when it is.
+        """How a solid differs from the space that the mesh encloses, or None where it agrees.
 
-        slack_mm3 : volume the rung's own method may lose (0 for exact ones).
+        slack_mm3 : volume that the method of the rung may lose (0 for exact ones).
         """
         w = _winding(*arrays(manifold), self.columns, self.z_mm)
         limit = _SHARE * self.volume_mm3 + slack_mm3
         decided = (self.winding <= _UNDECIDED[0]) | (self.winding >= _UNDECIDED[1])
         differs = float((decided & ((w > 0.5) != (self.winding > 0.5))).sum()) * self.cell_mm3
         if differs > limit:
-            return f"{differs:.4g} mm³ of it are not where the model is"
+            return f"it differs from the model in {differs:.4g} mm³"
         layers = float(np.abs(np.rint(w) - (w > 0.5)).sum()) * self.cell_mm3
         if layers > limit:
             return f"{layers:.4g} mm³ of it overlap or are inside out"
@@ -95,14 +98,15 @@ class Reference:
 
 
 def _winding(vertices: Float, faces: Int, columns: Float, z: Float) -> Float:
+    """(c, m) winding numbers at heights z (c, m) on columns (c, 2)."""
     column_of = np.repeat(np.arange(len(columns)), z.shape[1])
     return winding_in_columns(vertices, faces, columns, column_of, z.ravel()).reshape(z.shape)
 
 
 def _jittered(low: Float, extents: Float) -> tuple[Float, Float]:
-    """Lines (c, 2) through about square cells over the bounds, and heights (c, m) on each.
+    """Lines (c, 2) through nearly square cells over the bounds, and heights (c, m) on each.
 
-    At least four cells along the shorter side; always from the same seed.
+    low, extents : (3,) mm.  The shorter side has four cells or more; the seed is fixed.
     """
     rng = np.random.default_rng(_SEED)
     edge = float(np.sqrt(np.prod(extents[:2]) / _COLUMNS))

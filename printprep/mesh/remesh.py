@@ -1,8 +1,8 @@
-"""The last rung: a new surface around all that the winding number calls inside.
+"""The last repair rung: a new surface around the space that is inside by winding number.
 
 Notation: d the exact distance to the model's triangles, w the generalized winding number.  The
-field is f = d · clamp(4(w − ½), −1, 1), and the surface f = 0.  Where the model is closed w is
-within ¼ of 0 or 1, f is the signed distance and the surface is the model's.  Where it is open w
+field is f = d · clamp(4(w − ½), −1, 1), and the new surface is f = 0.  Where the model is closed, w
+is within ¼ of 0 or 1, f is the signed distance and the surface is the model's.  Where it is open, w
 runs smoothly from 0 to 1 across the gap and closes it along w = ½.  f is continuous: w jumps only
 on the triangles, where d = 0.
 
@@ -23,6 +23,7 @@ from printprep.mesh.measure import (
 )
 from printprep.mesh.shells import Candidate, Refusal
 from printprep.mesh.winding_columns import winding_in_columns
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -32,16 +33,16 @@ if TYPE_CHECKING:
 CELLS = 200  # along the longest side
 _BLOCK = 4  # cells along an edge of the coarse blocks that decide where to look closely
 _MARGIN = 2 * _BLOCK  # cells around the model
-# The grid is shifted by fractions of a cell that no model's own coordinates have in common with it.
+# The grid is shifted by fractions of a cell, so that no node falls on a model's own coordinates.
 _ASIDE = np.array((0.3183, 0.3679, 0.4142))
-_LEAST = 1e-3  # |f| is kept above this share of a cell, or triangles degenerate at grid points
-_SIMPLIFY = 0.05  # cells the surface may move when triangles are merged
+_LEAST = 1e-3  # |f| stays above this share of a cell, else triangles degenerate at grid points
+_SIMPLIFY = 0.05  # cells that the surface may move when triangles are merged
 _CRUMB_CELLS = 8  # a shell of fewer cells is noise of the winding number around open edges
-_CORNERS_LOST = 0.1  # cells lost on the average over the area where edges are cut off
+_CORNERS_LOST = 0.1  # mean depth, in cells, that marching cubes cuts off at edges
 
 
 def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
-    """The solid {w > ½} of a mesh (vertices (n, 3) mm, faces (m, 3)), as marching cubes sees it."""
+    """The solid {w > ½} of a mesh by marching cubes; vertices : (n, 3) mm, faces : (m, 3)."""
     from skimage.measure import marching_cubes
 
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -49,7 +50,7 @@ def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
     origin = low - (_MARGIN + _ASIDE) * pitch
     field = _field(vertices, faces, origin, high - low, pitch)
     if not (field > 0).any():
-        return Refusal("no cell of the new grid lies inside it")
+        return Refusal("no node of the new grid lies inside it")
     corners, triangles, _, _ = marching_cubes(field, 0.0, allow_degenerate=False)
     points = corners.astype(np.float64) * pitch + origin
     triangles = triangles.astype(np.int64)
@@ -57,13 +58,13 @@ def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
         triangles = triangles[:, ::-1]
     manifold, status = try_manifold(points, triangles)
     if status != "NoError":
-        return Refusal(f"the new surface is no manifold ({status})")
+        return Refusal(f"the new surface is not a manifold ({status})")
     manifold, crumbs = _without_crumbs(manifold.simplify(_SIMPLIFY * pitch), pitch)
     if manifold.is_empty():
         return Refusal("all of it is thinner than a cell of the new grid")
     actions = [f"Made a new surface by winding number, in cells of {pitch:.3g} mm."]
     if crumbs:
-        actions.append(f"Left out {crumbs} crumb{'s' if crumbs > 1 else ''} at open edges.")
+        actions.append(f"Left out {counted(crumbs, 'crumb')} at open edges.")
     return Candidate(
         manifold,
         tuple(actions),
@@ -73,6 +74,7 @@ def remeshed(vertices: Float, faces: Int) -> Candidate | Refusal:
 
 
 def _without_crumbs(manifold: Manifold, pitch: float) -> tuple[Manifold, int]:
+    """The manifold without shells of a few cells, and how many those are."""
     parts = manifold.decompose()
     kept = [part for part in parts if abs(part.volume()) >= _CRUMB_CELLS * pitch**3]
     if len(kept) == len(parts):
@@ -81,19 +83,22 @@ def _without_crumbs(manifold: Manifold, pitch: float) -> tuple[Manifold, int]:
 
 
 def _field(vertices: Float, faces: Int, origin: Float, extents: Float, pitch: float) -> Float:
-    """f at the nodes of the grid, (nx, ny, nz) in x, y, z; far from the surface only its sign."""
+    """(nx, ny, nz) f at the nodes of the grid; far from the surface only the sign is right.
+
+    vertices : (n, 3) mm;  faces : (m, 3);  origin, extents : (3,) mm;  pitch : mm.
+    """
     blocks = np.ceil((extents / pitch + 2 * _MARGIN) / _BLOCK).astype(np.int64)
     everywhere = np.ones(blocks + 1, dtype=bool)
     coarse = _BLOCK * pitch
     w = _winding(everywhere, vertices, faces, origin, coarse).reshape(blocks + 1)
     d = distance_to_mesh_mm(_nodes(everywhere, origin, coarse), vertices, faces)
     close = _close_blocks(w, d.reshape(blocks + 1), pitch)
-    # A node far away has the sign of its block, which is that of any of the block's corners.
+    # A node far from the surface has the sign of its block, the same at all corners of the block.
     f = np.where(_spread(w[:-1, :-1, :-1] > 0.5), pitch, -pitch).astype(np.float64)
     near = _spread(close)
     w_near = _winding(near, vertices, faces, origin, pitch)
     f[near] = np.where(w_near > 0.5, pitch, -pitch)
-    # Marching cubes reads a value only at the two ends of an edge that is crossed.
+    # Marching cubes reads values only at the two ends of a crossed edge.
     crossed = _crossed(f > 0) & near
     decided = w_near[crossed[near]]
     distance = distance_to_mesh_mm(_nodes(crossed, origin, pitch), vertices, faces)
@@ -104,7 +109,7 @@ def _field(vertices: Float, faces: Int, origin: Float, extents: Float, pitch: fl
 
 
 def _winding(wanted: Bool, vertices: Float, faces: Int, origin: Float, pitch: float) -> Float:
-    """(n,) winding numbers at the nodes wanted, in the order of a flattened grid."""
+    """(k,) winding numbers at the True nodes of ``wanted`` (nx, ny, nz), in C order."""
     flat = wanted.reshape(-1, wanted.shape[2])
     used, inverse = np.unique(np.nonzero(flat)[0], return_inverse=True)
     xy = np.stack(np.unravel_index(used, wanted.shape[:2]), axis=-1)
@@ -113,7 +118,10 @@ def _winding(wanted: Bool, vertices: Float, faces: Int, origin: Float, pitch: fl
 
 
 def _close_blocks(w: Float, d: Float, pitch: float) -> Bool:
-    """Blocks the surface may pass through: near the triangles, or with w undecided across them."""
+    """(bx, by, bz) blocks that the surface may cross: near triangles, or w not clearly 0 or 1.
+
+    w, d : (bx + 1, by + 1, bz + 1) winding numbers, and distances in mm, at the corners of blocks.
+    """
     reach = np.sqrt(3) / 2 * _BLOCK * pitch  # from anywhere in a block to its nearest corner
     slices = (slice(None, -1), slice(1, None))
     corners = [(i, j, k) for i in slices for j in slices for k in slices]
@@ -125,7 +133,10 @@ def _close_blocks(w: Float, d: Float, pitch: float) -> Bool:
 
 
 def _spread(blocks: Bool) -> Bool:
-    """A value per block, to the nodes of its cells; a node between blocks is true if one is."""
+    """(nx, ny, nz) values of blocks (bx, by, bz) at the nodes of their cells.
+
+    A node between blocks is True where one of them is.
+    """
     fine: Bool = blocks
     for axis in range(3):
         fine = np.repeat(fine, _BLOCK, axis=axis)
@@ -136,12 +147,12 @@ def _spread(blocks: Bool) -> Bool:
 
 
 def _nodes(wanted: Bool, origin: Float, pitch: float) -> Float:
-    """(n, 3) positions of the nodes wanted, in the order of a flattened grid."""
+    """(k, 3) mm, positions of the True nodes of ``wanted`` (nx, ny, nz), in C order."""
     return origin + pitch * np.argwhere(wanted)
 
 
 def _crossed(inside: Bool) -> Bool:
-    """Nodes with a neighbour, along an edge of the grid, on the other side of the surface."""
+    """(nx, ny, nz) nodes with a neighbour, along a grid edge, on the other side of the surface."""
     result = np.zeros_like(inside)
     for axis in range(3):
         a = [slice(None)] * 3

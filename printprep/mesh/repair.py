@@ -1,8 +1,8 @@
-"""From triangles to a solid: a ladder that stops at the first rung that holds.
+"""Repairs triangles into a solid: a ladder of methods that stops at the first one that works.
 
 Rungs, gentlest first: the mesh as it is; its shells turned and united (no vertex moves); MeshLab's
-filters; a new surface by winding number.  A rung holds when it yields a manifold without error, of
-positive volume, that encloses what the model encloses (reference.py).
+filters; a new surface by winding number.  A rung works where it gives a manifold without error, of
+positive volume, that encloses the same space as the model (reference.py).
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from printprep.mesh.meshlab import mended
 from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
 from printprep.mesh.remesh import remeshed
+from printprep.mesh.sample import points_on_surface
 from printprep.mesh.shells import Candidate, Refusal, united
 from printprep.mesh.winding_columns import winding_at
 from printprep.types import Model, Repair, Rung, Solid
@@ -29,16 +30,16 @@ if TYPE_CHECKING:
 
 _SAMPLES = 10_000
 _SEED = 20140801
-_FLAT = 1e-9  # smallest extent over largest below which a model is a sheet of paper
+_FLAT = 1e-9  # smallest extent over largest, below which a model is flat
 
 
 def repair(model: Model) -> Solid:
-    """The solid a model means, on the bed, with what it took.
+    """The solid that a model describes, on the bed, with a record of the repair.
 
     Raises
     ------
-    GeometryError : the model is flat, encloses nothing, is more hole than surface, or no rung
-        gives a solid that agrees with it.
+    GeometryError : the model is flat, encloses no volume, is mostly open, or no rung gives a solid
+        that agrees with it.
     """
     _refuse_flat(model)
     faces, turned = right_side_out(model.vertices, model.faces)
@@ -58,11 +59,12 @@ def repair(model: Model) -> Solid:
         reasons.append(f"{rung}: {fault}")
     raise GeometryError(
         f"{model.name} cannot be made a solid ({'; '.join(reasons)}).",
-        "Repair it in a modelling program: close its holes and make its walls thick.",
+        "Repair it in a modelling program: close its holes and give its walls a thickness.",
     )
 
 
 def _ladder(vertices: Float, faces: Int) -> Iterator[tuple[Rung, Candidate | Refusal]]:
+    """What each rung gives, gentlest first; vertices : (n, 3) mm, faces : (m, 3)."""
     yield "union", united(vertices, faces)
     for offer in mended(vertices, faces):
         yield "meshlab", offer
@@ -70,6 +72,7 @@ def _ladder(vertices: Float, faces: Int) -> Iterator[tuple[Rung, Candidate | Ref
 
 
 def _fault(offer: Candidate, reference: Reference) -> str | None:
+    """Why a rung's solid is refused, or None where it is good."""
     if not offer.manifold.volume() > 0:
         return "its volume is not positive"
     return reference.disagreement(offer.manifold, offer.slack_mm3)
@@ -89,13 +92,13 @@ def _refuse_empty(model: Model, reference: Reference) -> None:
     if reference.volume_mm3 <= 0:
         raise GeometryError(
             f"{model.name} encloses no volume: its surfaces have no inside.",
-            "Give them a thickness in a modelling program (solidify).",
+            "Give the surfaces a thickness in a modelling program (solidify).",
         )
     if reference.undecided_mm3 > reference.volume_mm3:
         raise GeometryError(
             f"{model.name} is an open sheet, not the surface of a solid: "
-            f"{reference.undecided_mm3:.4g} mm³ are neither clearly inside nor outside, "
-            f"{reference.volume_mm3:.4g} mm³ are inside.",
+            f"{reference.undecided_mm3:.4g} mm³ are neither clearly inside nor clearly outside, "
+            f"only {reference.volume_mm3:.4g} mm³ are inside.",
             "Close its holes, or give the sheet a thickness, in a modelling program.",
         )
 
@@ -103,6 +106,7 @@ def _refuse_empty(model: Model, reference: Reference) -> None:
 def _solid(
     model: Model, faces: Int, rung: Rung, offer: Candidate, before: tuple[str, ...]
 ) -> Solid:
+    """A rung's solid on the bed; faces : (m, 3) turned;  before : actions before that rung."""
     actions = (*before, *offer.actions)
     if rung == "union" and not actions:
         rung = "as-is"
@@ -123,7 +127,7 @@ def _solid(
 
 
 def _seated(manifold: Manifold, placement: Float) -> tuple[Manifold, Float]:
-    """Back on the bed, when what was left out or made anew moved the lowest point."""
+    """The solid on the bed, where the repair changed the lowest point, and its (4, 4) placement."""
     lowest = float(manifold.bounding_box()[2])
     if lowest == 0:
         return manifold, placement
@@ -133,23 +137,17 @@ def _seated(manifold: Manifold, placement: Float) -> tuple[Manifold, Float]:
 
 
 def _moved(vertices: Float, faces: Int, manifold: Manifold) -> Float:
-    """Distances in mm from points on the model's surface to the solid's, never empty.
+    """(k,) mm, distances from points on the model's surface to the solid's, k ≥ 1.
 
-    Points are drawn evenly by area, always the same ones.  Only those where the surface parts
-    inside from outside count: what another shell swallows has not moved.
+    vertices : (n, 3) mm;  faces : (m, 3).  Points lie evenly over the area, always the same ones.
+    Only those that have inside on one side and outside on the other count: a shell inside another
+    one disappears in the union, but nothing moves.
     """
-    corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    doubled = np.linalg.norm(normals, axis=1)
     rng = np.random.default_rng(_SEED)
-    cumulative = np.cumsum(doubled)
-    index = np.searchsorted(cumulative, rng.random(_SAMPLES) * cumulative[-1], side="right")
-    index = np.minimum(index, len(faces) - 1)
-    u, v = np.sqrt(rng.random(_SAMPLES)), rng.random(_SAMPLES)
-    weights = np.stack([1 - u, u * (1 - v), u * v], axis=1)
-    points = np.einsum("nk,nkj->nj", weights, corners[index])
+    found = points_on_surface(vertices, faces, rng.random(_SAMPLES), rng)
+    points, normals = found.points, found.area_normals
     step = 1e-4 * float(np.ptp(vertices, axis=0).max())
-    outward = step * normals[index] / np.maximum(doubled[index], 1e-300)[:, None]
+    outward = step * normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
     bounds = (winding_at(points - outward, vertices, faces) > 0.5) & (
         winding_at(points + outward, vertices, faces) <= 0.5
     )

@@ -1,12 +1,12 @@
-"""STL, binary and ASCII, as exporters really write it.
+"""Reads STL, binary and ASCII, in all the variants that exporters write.
 
-Read here and not by trimesh, because a refusal must say what is wrong with the file (how many
-triangles the header promises and how many are there, which line cannot be read), and because
-ASCII files with carriage returns alone, or with words after ``endloop``, are whole.
+printprep has its own reader because an error says what is wrong with the file (how many triangles
+the header promises and how many there are, which line cannot be read), and because it accepts ASCII
+files with carriage returns only, or with words after ``endloop``.
 
 Binary (3D Systems, 1988): 80 bytes of anything, a little-endian uint32 count n, then n records of
 50 bytes: normal, three corners as float32, two bytes of attributes.  The stored normal is not
-used: the order of the corners says which side is outside.
+used: the order of the corners defines the outside.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
+_AGAIN = "Export the model again, as binary STL if possible."
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-# Lines that may stand between facets; what follows the first word carries no geometry.
+# First words of lines that carry no geometry.
 _OTHER = frozenset({"solid", "endsolid", "facet", "endfacet", "outer", "color", "#"})
 
 
@@ -33,13 +34,13 @@ def read_stl(data: bytes, what: str) -> Float:
 
     Raises
     ------
-    InputError : truncated, not STL at all, a facet without exactly three corners, or a number
-        that cannot be read.
+    InputError : the file is truncated or not STL, a facet does not have exactly three corners, or
+        a number cannot be read.
     """
-    # The count against the size decides first: many binary files begin with "solid".
+    # The count decides first, compared with the size: many binary files begin with "solid".
     count = struct.unpack_from("<I", data, 80)[0] if len(data) >= _HEADER else 0
     promised = _HEADER + count * _RECORD.itemsize
-    # Text has no zero byte, a binary file has them in its attributes if not in its header.
+    # Text has no zero byte; a binary file has some, in its header or its attributes.
     if len(data) == promised or b"\x00" in data[:4096]:
         if len(data) < promised:
             raise InputError(
@@ -59,7 +60,8 @@ def read_stl(data: bytes, what: str) -> Float:
 
 
 def _read_ascii(data: bytes, what: str) -> Float:
-    # Latin-1 decodes every byte; only names can hold others, and they are not used.
+    """Corners (m, 3 corners, 3 xyz) of an ASCII file."""
+    # Latin-1 decodes every byte; only names can hold more than ASCII, and they are not used.
     corners: list[list[float]] = []
     facet: list[list[float]] = []
     in_name = False
@@ -73,15 +75,15 @@ def _read_ascii(data: bytes, what: str) -> Float:
         elif key == "endloop":
             if len(facet) != 3:
                 raise InputError(
-                    f"{what}, line {number}: a facet has {len(facet)} corners instead of three.",
-                    "Export the model again, as binary STL if you can.",
+                    f"{what}, line {number}: a facet has {len(facet)} corners, it needs three.",
+                    _AGAIN,
                 )
             corners += facet
             facet = []
         elif key not in _OTHER and not in_name:
             raise InputError(
-                f"{what}, line {number}: {words[0][:20]!r} is no word of an STL file.",
-                "Export the model again, as binary STL if you can.",
+                f"{what}, line {number}: {words[0][:20]!r} is not a word of an STL file.",
+                _AGAIN,
             )
         # splitlines also cuts at characters that a name may hold (form feed, next line …).
         in_name = key == "solid" or (in_name and key not in _OTHER and key != "vertex")
@@ -99,11 +101,11 @@ def _vertex(words: list[str], what: str, number: int) -> list[float]:
     except ValueError as error:
         raise InputError(
             f"{what}, line {number}: a corner is not three numbers.",
-            "Export the model again, as binary STL if you can.",
+            _AGAIN,
         ) from error
     if len(values) != 3:
         raise InputError(
-            f"{what}, line {number}: a corner has {len(values)} coordinates instead of three.",
-            "Export the model again, as binary STL if you can.",
+            f"{what}, line {number}: a corner has {len(values)} coordinates, it needs three.",
+            _AGAIN,
         )
     return values

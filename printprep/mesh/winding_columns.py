@@ -1,14 +1,14 @@
-"""Winding numbers along vertical lines: exact where the surface is closed, quick for any mesh.
+"""Winding numbers along vertical lines: exact where the surface is closed, fast for any mesh.
 
 Notation: a column is a line x = const, y = const; at each triangle it crosses, s = sign(n_z), n
 the triangle's normal.  For a closed surface the winding number of a point is w = Σ s over the
 crossings above it.
 
-An open surface is closed first, by a triangle from every unmatched edge to one apex.  Winding
-numbers add, so w(open) = w(closed) − w(those triangles), and only the few triangles added need the
-solid angle.  The hierarchical approximation over the whole mesh (``measure.winding``) loses both
-its speed and its accuracy on the long thin triangles of mechanical parts (up to 0.27 off, and 50
-times slower, measured on a plate of 27,000 triangles); this does not mind them.
+An open surface is closed first, by a triangle (a lid) from each unmatched edge to one apex.
+Winding numbers add, so w(open) = w(closed) − w(lids), and only the few lids need the solid angle.
+The hierarchical approximation over the whole mesh (``measure.winding``) loses both its speed and
+its accuracy on the long thin triangles of mechanical parts (up to 0.27 off, and 50 times slower,
+measured on a plate of 27,000 triangles); columns do not.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
 from printprep.mesh.measure import winding
 from printprep.mesh.weld import directed_edges
 
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-_PAIRS = 2_000_000  # triangle-column pairs looked at together
+_PAIRS = 2_000_000  # triangle-column pairs tested at once, to bound the memory
 
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Where columns cross a surface, sorted by column, then upward.
+    """Crossings of columns with a surface, sorted by column, then upward.
 
-    column : (k,) int64;  z_mm : (k,);  sign : (k,) int64, +1 where the surface faces up.
+    column : (k,) int64;  z_mm : (k,);  sign : (k,) int64, +1 where the surface faces up, else −1.
     """
 
     column: Int
@@ -45,37 +46,43 @@ class Crossings:
 def winding_in_columns(
     vertices: Float, faces: Int, columns: Float, column_of: Int, z_mm: Float
 ) -> Float:
-    """(n,) winding numbers of points (columns[column_of], z_mm) about a mesh, open or closed.
+    """(k,) winding numbers of points (columns[column_of], z_mm) about a mesh, open or closed.
 
-    vertices : (v, 3) mm;  faces : (m, 3);  columns : (c, 2) x, y of the lines;
-    column_of : (n,) int64;  z_mm : (n,).
+    vertices : (n, 3) mm;  faces : (m, 3);  columns : (c, 2) mm, x and y of the lines;
+    column_of : (k,) int64;  z_mm : (k,).
 
-    A column must not pass exactly through an edge or corner: jitter it.
+    The caller jitters the columns: none may pass exactly through an edge or a corner.
     """
     lids = _lids(faces)
     if len(lids) == 0:
-        return _counted(cross(vertices, faces, columns), len(columns), column_of, z_mm)
+        return _summed(crossings_of(vertices, faces, columns), len(columns), column_of, z_mm)
     apex = vertices[np.unique(lids)].mean(axis=0)
     points = np.vstack([vertices, apex])
     lids = np.column_stack([lids, np.full(len(lids), len(vertices))])
-    closed = cross(points, np.vstack([faces, lids]), columns)
-    w = _counted(closed, len(columns), column_of, z_mm)
+    closed = crossings_of(points, np.vstack([faces, lids]), columns)
+    w = _summed(closed, len(columns), column_of, z_mm)
     return w - winding(np.column_stack([columns[column_of], z_mm]), points, lids)
 
 
 def winding_at(points: Float, vertices: Float, faces: Int) -> Float:
-    """(n,) winding numbers of scattered points (n, 3) mm, each in a column of its own."""
+    """(k,) winding numbers of scattered points (k, 3) mm, each in its own column.
+
+    vertices : (n, 3) mm;  faces : (m, 3), open or closed.
+    """
     return winding_in_columns(vertices, faces, points[:, :2], np.arange(len(points)), points[:, 2])
 
 
-def winding_at_of_closed(points: Float, vertices: Float, faces: Int) -> Float:
-    """(n,) winding numbers of scattered points about a mesh known to be closed: no lids to find."""
-    crossings = cross(vertices, faces, points[:, :2])
-    return _counted(crossings, len(points), np.arange(len(points)), points[:, 2])
+def winding_in_closed(points: Float, vertices: Float, faces: Int) -> Float:
+    """(k,) winding numbers of scattered points (k, 3) mm about a closed mesh, which needs no lids.
+
+    vertices : (n, 3) mm;  faces : (m, 3).
+    """
+    crossings = crossings_of(vertices, faces, points[:, :2])
+    return _summed(crossings, len(points), np.arange(len(points)), points[:, 2])
 
 
 def _lids(faces: Int) -> Int:
-    """(k, 2) directed edges that would balance the faces' own, so many times as they miss."""
+    """(k, 2) directed edges that faces (m, 3) lack to be closed, each as often as it is missing."""
     edges = directed_edges(faces)
     ends, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
     excess = np.bincount(
@@ -86,10 +93,13 @@ def _lids(faces: Int) -> Int:
     return np.vstack([forward, backward])
 
 
-def _counted(crossings: Crossings, count: int, column_of: Int, z_mm: Float) -> Float:
-    """Sum of the signs above each point."""
+def _summed(crossings: Crossings, count: int, column_of: Int, z_mm: Float) -> Float:
+    """(k,) sum of the signs of the crossings above each point; count : number of columns.
+
+    column_of : (k,);  z_mm : (k,).
+    """
     order = np.lexsort((z_mm, column_of))
-    # Both lists run by column and upward, so one merge of them places every point.
+    # Both lists are sorted by column, then upward, so one merge finds the place of every point.
     both = np.concatenate([crossings.column, column_of[order]])
     heights = np.concatenate([crossings.z_mm, z_mm[order]])
     signs = np.concatenate([crossings.sign, np.zeros(len(order), dtype=np.int64)])
@@ -102,8 +112,11 @@ def _counted(crossings: Crossings, count: int, column_of: Int, z_mm: Float) -> F
     return w
 
 
-def cross(vertices: Float, faces: Int, columns: Float) -> Crossings:
-    """Where the columns (c, 2) cross the triangles of a mesh, vertical triangles excepted."""
+def crossings_of(vertices: Float, faces: Int, columns: Float) -> Crossings:
+    """Where columns cross the triangles of a mesh; vertical triangles do not count.
+
+    vertices : (n, 3) mm;  faces : (m, 3);  columns : (c, 2) mm.
+    """
     corners = vertices[faces]
     a, b, c = (corners[:, i, :2] for i in range(3))
     doubled = _cross2(b - a, c - a)
@@ -133,22 +146,23 @@ def _cross2(a: Float, b: Float) -> Float:
 
 
 def _candidates(corners: Float, columns: Float) -> Iterator[tuple[Int, Int]]:
-    """Pairs (triangle, column) that contain every pair that crosses, a chunk at a time.
+    """Pairs (triangle (p,), column (p,)) among which are all that cross, a chunk at a time.
 
-    Columns are binned into rows along y and sorted by x within a row; a triangle is asked for the
-    stretch of x it covers within each row, so a long diagonal sliver costs little.
+    corners : (m, 3 corners, 3 xyz);  columns : (c, 2).  Columns are sorted into rows along y, and
+    by x within a row; a triangle is paired only with the stretch of x that it covers in each row,
+    so a long diagonal sliver costs little.
     """
     if len(corners) == 0 or len(columns) == 0:
         return
     rows = max(1, int(np.sqrt(len(columns))))
     low = columns.min(axis=0)
-    height = float(np.ptp(columns[:, 1])) / rows or 1.0  # all on one line: any row will do
+    height = float(np.ptp(columns[:, 1])) / rows or 1.0  # 1 where all columns have one y
     row = np.minimum(((columns[:, 1] - low[1]) / height).astype(np.int64), rows - 1)
-    # One ascending key for all rows: each row has a stretch of its own, wider than any x.
+    # One ascending key for all rows: each row has its own stretch of keys, wider than any x.
     stretch = 4 * max(float(np.ptp(columns[:, 0])), np.finfo(np.float64).tiny)
     key = row * stretch + (columns[:, 0] - low[0])
     order = np.argsort(key, kind="stable")
-    # Rows of triangles are found as those of columns are, so rounding parts none that meet.
+    # The same formula gives the rows of triangles, so rounding separates no pair that crosses.
     lowest_row, highest_row = (
         np.minimum(np.floor((y - low[1]) / height).astype(np.int64), rows - 1)
         for y in (corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1))
@@ -169,16 +183,16 @@ def _candidates(corners: Float, columns: Float) -> Iterator[tuple[Int, Int]]:
 
 
 def _runs(owner: Int, first: Int, last: Int) -> tuple[Int, Int]:
-    """Each owner with every integer of its run [first, last), one after the other."""
-    length = last - first
-    offset = np.cumsum(length) - length
-    return np.repeat(owner, length), np.arange(length.sum()) + np.repeat(first - offset, length)
+    """(k,) owner and (k,) integer: each owner (n,) with every integer in its [first, last)."""
+    run, place = runs(last - first)
+    return owner[run], first[run] + place
 
 
 def _covered(corners: Float, bottom: Float, height: float) -> tuple[Float, Float]:
-    """Stretch of x that triangles (n, 3, 3) cover within bottom ≤ y ≤ bottom + height, a bit wide.
+    """(n,) left and (n,) right end in x of triangles within bottom ≤ y ≤ bottom + height.
 
-    Empty (left > right) where a triangle has no point in that band.
+    corners : (n, 3 corners, 3 xyz);  bottom : (n,).  The band is a little widened; left > right
+    where a triangle has no point in it.
     """
     left, right = np.full(len(corners), np.inf), np.full(len(corners), -np.inf)
     bottom, top = bottom - 1e-9 * height, bottom + (1 + 1e-9) * height

@@ -1,6 +1,6 @@
-"""A manifold as STL, OBJ or PLY, the same bytes for the same triangles.
+"""Writes a manifold as STL, OBJ or PLY; the same triangles give the same bytes.
 
-These formats carry geometry only; print settings go into the 3MF.
+These formats carry geometry only; a 3MF carries print settings too.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import OutputError
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import area_normals, arrays
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
 
-# Must not begin with "solid": readers take that for ASCII.
+# It must not begin with "solid": readers take such a file for ASCII.
 _STL_HEADER = b"printprep binary STL, unit mm, z up".ljust(80, b" ")
 
 
 def to_bytes(manifold: Manifold, suffix: str) -> bytes:
-    """The file's content for a suffix of .stl (binary, float32), .obj (text) or .ply (binary,
-    float64); coordinates in mm.
+    """The content of a file in mm: .stl (binary, float32), .obj (text) or .ply (binary, float64).
 
     Raises OutputError for another suffix.
     """
     writer = _WRITERS.get(suffix.lower())
     if writer is None:
         raise OutputError(
-            f"{suffix or 'A name without suffix'} is no format that can be written here.",
+            f"{suffix or 'A name without suffix'} is not a format that printprep writes.",
             f"Use .3mf, or one of {', '.join(_WRITERS)}.",
         )
     return writer(*arrays(manifold))
 
 
 def _stl(vertices: Float, faces: Int) -> bytes:
+    """Binary STL of vertices (n, 3) mm and faces (m, 3)."""
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
     corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(corners)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     records = np.zeros(len(faces), dtype=record)
     records["normal"] = normals / np.where(length > 0, length, 1.0)
@@ -51,14 +51,16 @@ def _stl(vertices: Float, faces: Int) -> bytes:
 
 
 def _obj(vertices: Float, faces: Int) -> bytes:
+    """OBJ text of vertices (n, 3) mm and faces (m, 3)."""
     lines = ["# printprep, unit mm, z up"]
-    # repr is the shortest text that reads back to the same float64.
+    # repr is the shortest text that reads back as the same float64.
     lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
 def _ply(vertices: Float, faces: Int) -> bytes:
+    """Binary PLY of vertices (n, 3) mm and faces (m, 3)."""
     header = (
         "ply\nformat binary_little_endian 1.0\ncomment printprep, unit mm, z up\n"
         f"element vertex {len(vertices)}\n"

@@ -1,1 +1,1 @@
-"""What a layer may rest on: a slicer's own rule for where it would print support."""
+"""Overhangs, judged by the rule by which a slicer places support."""

@@ -1,4 +1,4 @@
-"""Grooves: edges and corners of a void where two walls close upward too early (suspects.py)."""
+"""Finds grooves: edges and corners where two walls of a void close too early (suspects.py)."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
 from printprep.mesh.weld import directed_edges
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
     from printprep.overhang.limits import Acceptance
-    from printprep.overhang.surface import Surface
+    from printprep.overhang.surface import VoidSurface
 
-# Slopes that were built to be t are no steeper; keels between such walls are a little: on a
-# funnel's polygon they lean so much more, and what sticks out is a corner of a few µm.
+# Slopes built to be t count as t up to this difference.  Keels between such walls lean a little
+# more, by this factor on a funnel with a polygon as section; only a corner of a few µm reaches out.
 _SAME = 1e-6
 KEEL = 1.05
 
 
-def grooves(surface: Surface, rule: Acceptance) -> Int:
-    """(k, 2) ends of such edges; corners that are on none of them twice."""
+def grooves(surface: VoidSurface, rule: Acceptance) -> Int:
+    """(k, 2) ends of groove edges; a corner on no such edge stands twice in its own row."""
     closing = _closing_corners(surface, rule)
     edges = directed_edges(surface.faces)
     edges = np.sort(edges[closing[edges].all(axis=1)], axis=1)
@@ -31,13 +32,13 @@ def grooves(surface: Surface, rule: Acceptance) -> Int:
 
 
 def groove_depth_mm(rule: Acceptance) -> float:
-    """How far below a groove walls are that it closes too early: c / t."""
+    """Height below a groove in which closing fills the void too early: c / t."""
     tan = max(rule.off_mm - rule.closing_mm, 1e-3) / rule.layer_mm
     return rule.closing_mm / tan
 
 
-def _closing_corners(surface: Surface, rule: Acceptance) -> Bool:
-    """(n,) corners where two walls meet whose slopes together are too steep for their angle."""
+def _closing_corners(surface: VoidSurface, rule: Acceptance) -> Bool:
+    """(n,) whether two walls meet at a vertex with slopes that are too steep for their angle."""
     tan = (rule.off_mm - rule.closing_mm) / rule.layer_mm
     corner, slope, facing, steep = _walls(surface, tan)
     near = np.zeros(len(surface.vertices), dtype=bool)
@@ -47,9 +48,8 @@ def _closing_corners(surface: Surface, rule: Acceptance) -> Bool:
     order = np.argsort(corner, kind="stable")
     corner, slope, facing, steep = corner[order], slope[order], facing[order], steep[order]
     first, last = (np.searchsorted(corner, corner, side) for side in ("left", "right"))
-    count = last - first
-    one = np.repeat(np.arange(len(corner)), count)
-    other = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count - first, count)
+    one, place = runs(last - first)
+    other = first[one] + place
     kept = (one != other) & steep[one]
     one, other = one[kept], other[kept]
     apart = 1 - np.einsum("ij,ij->i", facing[one], facing[other])
@@ -60,9 +60,12 @@ def _closing_corners(surface: Surface, rule: Acceptance) -> Bool:
     return found
 
 
-def _walls(surface: Surface, tan: float) -> tuple[Int, Float, Float, Bool]:
-    """Faces and keels that may be part of a groove, at each of their corners: (k,) the corner, the
-    slope, (k, 2) where they face, and (k,) whether they lean more than t."""
+def _walls(surface: VoidSurface, tan: float) -> tuple[Int, Float, Float, Bool]:
+    """Faces and keels that may form a groove, one row for each of their corners.
+
+    Returns (k,) the vertex, (k,) the slope, (k, 2) unit vectors of the direction they face, and
+    (k,) whether they lean more than t.
+    """
     least = 2 * tan - surface.steepest
     wall = np.flatnonzero((surface.slope > least) & ~surface.shallow)
     ends, lean, normals = surface.keels

@@ -1,4 +1,4 @@
-"""What the rule needs of polygons: growing, closing, windows, and pieces that are new.
+"""Operations on polygons for the overhang rule: growing, closing, windows, and new pieces.
 
 Contours are (k, 2) arrays in mm; outer ones run counter-clockwise, holes clockwise.
 """
@@ -17,35 +17,35 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 ARC_SEGMENTS = 16
-# Clipping moves corners by its own rounding; the same contour is still found again within this.
+# Clipping rounds corners; contours whose boxes agree within this are the same contour.
 SAME_MM = 1e-3
-# A window around many boxes is made of such cells.
+# Size of the cells that form a window around many boxes.
 CELL_MM = 2.0
-# Regions below this are what clipping rounds off.
+# Smaller regions come from the rounding of clipping.
 LEAST_AREA_MM2 = 1e-4
 
 
 def grown(region: CrossSection, radius_mm: float) -> CrossSection:
-    """The region grown by a disc, shrunk where the radius is negative."""
+    """The region grown by a disc, or shrunk where the radius is negative."""
     from manifold3d import JoinType
 
     return region.offset(radius_mm, JoinType.Round, 2.0, ARC_SEGMENTS)
 
 
 def closed(region: CrossSection, radius_mm: float) -> CrossSection:
-    """The region closed by a disc, opened where the radius is negative."""
+    """The region closed by a disc, or opened where the radius is negative."""
     return grown(grown(region, radius_mm), -radius_mm)
 
 
 def regions(outlines: Sequence[Float]) -> CrossSection:
-    """What the contours enclose, whichever way they run; together."""
+    """The region that contours (k, 2) enclose, in either direction of running."""
     from manifold3d import CrossSection, FillRule
 
     return CrossSection(list(outlines), FillRule.NonZero) if outlines else CrossSection()
 
 
 def windows(outlines: Sequence[Float], margin_mm: float) -> CrossSection:
-    """The bounding boxes of contours, each widened by a margin, as one region."""
+    """The bounding boxes of contours (k, 2), each widened by a margin, as one region."""
     from manifold3d import CrossSection, OpType
 
     boxes = []
@@ -56,7 +56,7 @@ def windows(outlines: Sequence[Float], margin_mm: float) -> CrossSection:
 
 
 def cells(low_mm: Float, high_mm: Float) -> CrossSection:
-    """The cells of a lattice that boxes (n, 2) meet, as one region."""
+    """The cells of a lattice that boxes meet, as one region; low_mm, high_mm : (n, 2)."""
     from manifold3d import CrossSection, OpType
 
     first, last = np.floor(low_mm / CELL_MM), np.floor(high_mm / CELL_MM) + 1
@@ -69,10 +69,10 @@ def cells(low_mm: Float, high_mm: Float) -> CrossSection:
 
 
 def new_pieces(here: CrossSection, below: CrossSection) -> list[Float]:
-    """Pieces of material enclosed by the void ``here`` that lie wholly over the void ``below``.
+    """Contours (k, 2) of material that the void ``here`` encloses and that begins in its layer.
 
-    Such a piece is a hole of the one, and an outline of what the other has more, unless that
-    outline itself has a hole where something stands.
+    Such a piece lies entirely over the void ``below``: it is a hole of ``here``, and an outline of
+    ``below`` − ``here``, unless that outline has itself a hole where material stands.
     """
     holes, edges = _measured(here, -1)
     if not holes:
@@ -86,7 +86,7 @@ def new_pieces(here: CrossSection, below: CrossSection) -> list[Float]:
 
 
 def _measured(region: CrossSection, turn: int) -> tuple[list[Float], Float]:
-    """Contours that run one way (+1 counter-clockwise), and (k, 4) the boxes around them."""
+    """Contours that run one way (+1 counter-clockwise), and (k, 4) boxes: low and high x, y."""
     outlines = region.to_polygons()
     if not outlines:
         return [], np.zeros((0, 4))
@@ -102,10 +102,10 @@ def _measured(region: CrossSection, turn: int) -> tuple[list[Float], Float]:
 
 
 def centroid(outlines: Sequence[Float]) -> tuple[float, tuple[float, float]]:
-    """Area in mm² and centroid of a region given by its contours, holes clockwise."""
+    """Area in mm² and centroid of a region given by its contours (k, 2), holes clockwise."""
     area, moment = 0.0, np.zeros(2)
     for outline in outlines:
-        start = outline[0]  # measured from there, small patches lose no digits
+        start = outline[0]  # as reference, so that small patches lose no digits
         near = outline - start
         after = np.roll(near, -1, axis=0)
         cross = near[:, 0] * after[:, 1] - near[:, 1] * after[:, 0]

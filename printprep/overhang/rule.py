@@ -1,18 +1,18 @@
-"""The slicer's acceptance rule, layer by layer, on voids inside a part or on a whole part.
+"""The slicer's overhang rule, layer by layer, on voids inside a part or on a whole part.
 
 Notation: M the material of a layer, V a void in it, M₋ and V₋ those of the layer below, all
-closed first (material closed by c is void opened by c, V ∘ c); ⊕ and ⊖ grow and shrink.  A layer's
-overhang is what M has beyond M₋ ⊕ off.  Inside a cavity, whose wall is thicker than off, growing
-the material is shrinking the void, so the outside need not be looked at:
+closed first (material closed by c is void opened by c, V ∘ c); ⊕ and ⊖ grow and shrink.  The
+overhang of a layer is the part of M beyond M₋ ⊕ off.  Inside a cavity, whose wall is thicker than
+off, growing the material is shrinking the void, so the outside does not matter:
 
     flagged = (V₋ ∘ c ⊖ off) − V ∘ c.
 
 An island is a piece of M, enclosed by V, with no material at all under it.
 
-Only around suspects (suspects.py) is anything sliced.  Most layers there are acquitted without
-opening anything: V ∘ c holds V ⊖ c, and V₋ ∘ c lies in V₋, so what is flagged lies in
-(V₋ ⊖ off) − (V ⊖ c), which is empty wherever tan θ ≤ (off − c) / h.  Most others are by
-(V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.  The rest is looked at exactly, around there only.
+Only the surroundings of suspects (suspects.py) are sliced.  Most layers there pass without any
+opening: V ∘ c contains V ⊖ c, and V₋ ∘ c lies in V₋, so what is flagged lies in
+(V₋ ⊖ off) − (V ⊖ c), which is empty wherever tan θ ≤ (off − c) / h.  Most other layers pass by
+(V₋ ⊖ off) − V ∘ c, where V₋ is not opened yet.  The rest is computed exactly, in a small window.
 """
 
 from __future__ import annotations
@@ -43,17 +43,17 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.overhang.limits import Acceptance
 
-# Slices are simplified by this much: a hundredth of what decides.
+# Slices are simplified by this much: a hundredth of off.
 SIMPLIFY_MM = 0.002
-# So much around a suspect is looked at too; off, the opening and its arcs reach less far.
+# The margin of a window around a suspect; off, the opening and its arcs reach less far.
 AROUND_MM = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Flagged:
-    """One patch of a layer with too little under it.
+    """One patch of a layer with too little material under it.
 
-    z_mm : underside of the layer;  outline_mm : contours (k, 2), outer one counter-clockwise;
+    z_mm : underside of the layer;  outline_mm : contours (k, 2), the outer one counter-clockwise;
     at_mm : its centroid (x, y, z);  island : no material at all lies under it.
     """
 
@@ -66,22 +66,23 @@ class Flagged:
 
 @dataclass(frozen=True, eq=False)
 class Unsupported:
-    """All that a slicer would support, from the bed upward."""
+    """All patches that a slicer would support, from the bed upward."""
 
     patches: tuple[Flagged, ...]
 
     @property
     def area_mm2(self) -> float:
-        """Area of the patches that are no islands, layer by layer."""
+        """Area of the patches that are not islands, summed over the layers."""
         return float(sum(patch.area_mm2 for patch in self.patches if not patch.island))
 
     @property
     def islands(self) -> int:
+        """Number of islands."""
         return sum(patch.island for patch in self.patches)
 
     @property
     def worst(self) -> Flagged | None:
-        """The largest island, or where there is none the largest patch."""
+        """The largest island, or the largest patch where there is no island."""
         return max(self.patches, key=lambda patch: (patch.island, patch.area_mm2), default=None)
 
 
@@ -91,13 +92,14 @@ def unsupported_ceilings(
     phases: Sequence[float] = (0.0,),
     suspects: Suspects | None = None,
 ) -> Unsupported:
-    """What the ceilings of a cavity, and pieces that begin inside it, would need as support.
+    """Ceilings of a cavity, and islands inside it, that a slicer would support.
 
     Parameters
     ----------
-    cavity : the void, in printing position; material all around it thicker than ``rule.off_mm``.
-    phases : layers are cut these shares of a layer higher: another first layer, a raft.
-    suspects : judge there only;  None for all that may be flagged.
+    cavity : the void, in printing position; the material around it is thicker than
+        ``rule.off_mm``.
+    phases : shares of a layer by which the layers are shifted up: another first layer, a raft.
+    suspects : places to judge;  None for all that can be flagged.
     """
     if suspects is None:
         suspects = Suspects.of(cavity, rule)
@@ -109,7 +111,7 @@ def unsupported_ceilings(
 def _judged(
     void: Manifold, rule: Acceptance, phase: float, suspects: Suspects
 ) -> Iterator[Flagged]:
-    """Patches of all layers that touch a suspect."""
+    """The flagged patches of all layers, those that touch a suspect."""
     cut: tuple[float, CrossSection] | None = None
     for (under, _), (middle, bottom) in pairwise(_layers(void, rule, phase)):
         near = (suspects.low_mm[:, 2] <= middle) & (suspects.high_mm[:, 2] >= under)
@@ -129,7 +131,7 @@ def _judged(
 
 
 def _touches(patch: Flagged, low: Float, high: Float) -> bool:
-    """Whether a patch meets any of the boxes (n, 2)."""
+    """Whether a patch meets any of the boxes; low, high : (n, 2) mm."""
     outline = np.concatenate(patch.outline_mm)
     met = (outline.min(axis=0) <= high).all(axis=1) & (outline.max(axis=0) >= low).all(axis=1)
     boxes = [np.stack([a, b]) for a, b in zip(low[met], high[met], strict=True)]
@@ -137,9 +139,10 @@ def _touches(patch: Flagged, low: Float, high: Float) -> bool:
 
 
 def unsupported_overhangs(part: Manifold, rule: Acceptance, phase: float = 0.0) -> Unsupported:
-    """What a whole part would need as support, inside and outside, above its first layer.
+    """Overhangs of a whole part, inside and outside, above its first layer, that need support.
 
-    The rule word by word, on material; :func:`unsupported_ceilings` is the quick form for voids.
+    This is the rule word by word, on material; :func:`unsupported_ceilings` is the fast form for
+    voids, which tests compare with it.
     """
     patches: list[Flagged] = []
     below: CrossSection | None = None
@@ -158,7 +161,7 @@ def unsupported_overhangs(part: Manifold, rule: Acceptance, phase: float = 0.0) 
 
 
 def _layers(body: Manifold, rule: Acceptance, phase: float) -> Iterator[tuple[float, float]]:
-    """(middle, underside) of the layers from the first that cuts the body to one above it."""
+    """(middle, underside) of the layers, from the first that cuts the body to one above it."""
     if body.is_empty():
         return
     box = body.bounding_box()
@@ -175,7 +178,7 @@ def _layers(body: Manifold, rule: Acceptance, phase: float) -> Iterator[tuple[fl
 def _ceilings(
     here: CrossSection, below: CrossSection, z_mm: float, rule: Acceptance
 ) -> Iterator[Flagged]:
-    """Patches of the layer whose void is ``here``, over a layer whose void is ``below``."""
+    """Flagged patches of the layer with the void ``here``, over a layer with the void ``below``."""
     within, narrowed = grown(below, -rule.off_mm), grown(here, -rule.closing_mm)
     islands = new_pieces(here, below)
     suspect = within - narrowed
@@ -192,6 +195,7 @@ def _ceilings(
 
 
 def _flagged(region: CrossSection, z_mm: float, *, island: bool) -> Iterator[Flagged]:
+    """The pieces of a region as patches."""
     for piece in region.decompose():
         outlines = piece.to_polygons()
         area, (x, y) = centroid(outlines)

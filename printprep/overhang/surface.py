@@ -1,4 +1,7 @@
-"""A void's surface seen as ceilings: slopes, keels of material that hang in it, and their tips."""
+"""The surface of a void: slopes of its ceilings, keels of material that hang in it, and tips.
+
+A *way down* is a path on the surface that falls steeply enough: |Δxy| ≤ steepest · |Δz|.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.measure import area_normals
 from printprep.mesh.weld import directed_edges, opposite_edges
 
 if TYPE_CHECKING:
@@ -17,11 +21,11 @@ _EXACT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
-    """A closed mesh.
+class VoidSurface:
+    """The closed surface of a void.
 
     vertices : (n, 3), x, y, z in mm;  faces : (m, 3), counter-clockwise seen from outside the void;
-    normals : (m, 3), of unit length;  steepest : largest tangent of a way down.
+    normals : (m, 3), of unit length;  steepest : largest tangent of a way down, from the vertical.
     """
 
     vertices: Float
@@ -30,30 +34,33 @@ class Surface:
     steepest: float
 
     @staticmethod
-    def of(vertices: Float, faces: Int, steepest: float) -> Surface:
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        normals = np.cross(b - a, c - a)
+    def of(vertices: Float, faces: Int, steepest: float) -> VoidSurface:
+        """The surface with its normals; vertices : (n, 3) mm, faces : (m, 3)."""
+        normals = area_normals(vertices[faces])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-        return Surface(vertices, faces, normals, steepest)
+        return VoidSurface(vertices, faces, normals, steepest)
 
     @cached_property
     def slope(self) -> Float:
-        """(m,) tangents of the faces' overhang from the vertical; negative for floors."""
+        """(m,) tangents of the overhang of faces, from the vertical; negative for floors."""
         level = np.hypot(self.normals[:, 0], self.normals[:, 1])
         result: Float = self.normals[:, 2] / np.maximum(level, 1e-300)
         return result
 
     @cached_property
     def shallow(self) -> Bool:
-        """(m,) ceilings that are no way down."""
+        """(m,) whether a face is a ceiling too flat to be a way down."""
         level = np.hypot(self.normals[:, 0], self.normals[:, 1])
         result: Bool = self.normals[:, 2] > self.steepest * level + _EXACT
         return result
 
     @cached_property
     def keels(self) -> tuple[Int, Float, Float]:
-        """Hanging edges between ways down neither of which falls into the other: (k, 2) their ends,
-        (k,) tangents of their own overhang, (k, 3) sums of the normals beside them."""
+        """Hanging edges between two faces steep enough, neither of which falls into the other.
+
+        Returns (k, 2) their ends, (k,) the tangents of their own overhang, and (k, 3) the sums of
+        the normals on both sides.
+        """
         ends = np.sort(directed_edges(self.faces), axis=1)
         opposite = self.faces[:, [2, 0, 1]].ravel()
         one, other = opposite_edges(self.faces)
@@ -70,12 +77,12 @@ class Surface:
         return found, np.hypot(way[:, 0], way[:, 1]) / fall, mine[kept] + theirs[kept]
 
     def steep_keels(self) -> Int:
-        """(k, 2) ends of the keels that are no way down."""
+        """(k, 2) ends of the keels that are too flat to be a way down."""
         ends, slope, _ = self.keels
         return ends[slope > self.steepest]
 
     def tips(self) -> Int:
-        """(k,) corners of ceilings from which no edge and no face is a way down."""
+        """(k,) vertices of ceilings from which neither an edge nor a face gives a way down."""
         held = np.zeros(len(self.vertices), dtype=bool)
         edges = directed_edges(self.faces)
         way = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
@@ -97,10 +104,11 @@ class Surface:
 
 
 def _falls_into(mine: Float, theirs: Float) -> Bool:
-    """Whether from an edge the way down on one face stays in its material, under the other face.
+    """(k,) whether the way down from an edge on one face stays in material, under the other face.
 
-    In the plane one below the edge material is where n · (x, y) ≥ n_z for both normals; the point
-    of the one boundary nearest to the edge must lie within the other.
+    mine, theirs : (k, 3) normals of the two faces.  In the plane one unit below the edge, material
+    is where n · (x, y) ≥ n_z for both normals; the point of the first boundary nearest to the edge
+    must lie inside the second one.
     """
     level = np.maximum((mine[:, :2] ** 2).sum(axis=1), 1e-300)
     nearest = mine[:, :2] * (np.maximum(mine[:, 2], 0.0) / level)[:, None]

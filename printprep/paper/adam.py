@@ -1,14 +1,14 @@
-"""The paper's optimization as its authors run it, by Adam, without convolution or autograd.
+"""Run the paper's optimization as its authors do, by Adam, without convolution or autograd.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code
-(github.com/idvxlab/DensiCrafter), followed where they differ: logits start at +10 on the shell and
-−10 elsewhere (paper: ±∞), both with N(0, 1) noise, so the frozen voxels are not quite 0 and 1; the
-result is the density of the last evaluation, not of the best one.
+(github.com/idvxlab/DensiCrafter).  Where they differ this follows the code: logits start at +10 on
+the shell and −10 elsewhere (paper: ±∞), both with N(0, 1) noise, so the frozen voxels are not quite
+0 and 1; the result is the density of the last evaluation, not of the best one.
 
 One step on the device is a sigmoid, a thin mat-vec each way (4 × n, see `linear_form`) and Adam's
-update, in float32 and in place; the four moments and the few contact voxels go to the host, where
-the closed forms of `objective` turn them into four slopes.  On the CPU one thread does it: a step
-is shorter than waking a second one, and sums then keep their order on every machine.
+update, in float32 and in place.  The four moments and the few contact voxels go to the host, where
+the closed forms of `objective` turn them into four slopes.  The CPU uses one thread: a step is
+shorter than the start of a second thread, and sums keep their order on every machine.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ BETA1, BETA2, EPS = 0.9, 0.999, 1e-8  # Kingma & Ba, 2015, and torch's defaults
 def solve_adam(
     domain: PaperDomain, settings: PaperSettings, *, device: str = "cpu"
 ) -> PaperSolution:
-    """The density after ``settings.steps`` evaluations, and the loss at each of them.
+    """Minimize the paper's objective with ``settings.steps`` evaluations of Adam.
 
-    The noise is drawn on the CPU, so every device starts from the same logits.  The solution's
-    ``rho`` keeps the frozen voxels' sigmoids.
+    The CPU draws the noise, so every device starts from the same logits.  The solution's ``rho``
+    keeps the sigmoids of the frozen voxels, its ``trace`` the loss at each evaluation.
 
     Raises UsageError when torch has no such device.
     """
@@ -62,12 +62,16 @@ def initial_logits(domain: PaperDomain, settings: PaperSettings) -> np.ndarray:
 
 
 def _sigmoid(theta: np.ndarray) -> np.ndarray:
+    """1 / (1 + e^−θ), elementwise, of any shape."""
     value: np.ndarray = 1.0 / (1.0 + np.exp(-theta))
     return value
 
 
 def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float]:
-    """Free densities (n,) at the last evaluation and the loss at all of them."""
+    """Free densities (n,) at the last evaluation, and the loss (steps,) at each of them.
+
+    start : (n,) float32, logits of the free voxels.
+    """
     import torch
 
     where = _device(device)
@@ -76,6 +80,7 @@ def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float
     near, table = _reached(form)
 
     def put(array: np.ndarray) -> torch.Tensor:
+        """An array of any shape (…,), on the device."""
         return torch.from_numpy(np.ascontiguousarray(array)).to(where)
 
     with _one_thread(), torch.inference_mode():
@@ -115,7 +120,7 @@ def _run(form: LinearForm, start: np.ndarray, device: str) -> tuple[Float, Float
 
 @contextmanager
 def _one_thread() -> Iterator[None]:
-    """torch computes on one CPU thread, and on as many as before afterwards."""
+    """Let torch compute on one CPU thread, and on as many as before afterwards."""
     import torch
 
     before = torch.get_num_threads()
@@ -127,8 +132,10 @@ def _one_thread() -> Iterator[None]:
 
 
 def _reached(form: LinearForm) -> tuple[np.ndarray, np.ndarray]:
-    """The kernel's adjoint near the ground, as a gather: the free voxels some contender's mean
-    reads, (r,), and the contenders that read each, (r, E), m where there are fewer.
+    """The kernel's adjoint near the ground, as a gather.
+
+    Returns (r,) the free voxels that a contender's mean reads, and (r, E) the contenders that read
+    each, padded with m.
     """
     n, m = form.count, len(form.contenders)
     voxel = form.neighbours.reshape(-1)
@@ -144,13 +151,13 @@ def _reached(form: LinearForm) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _device(name: str) -> torch.device:
-    """The torch device of that name, if torch can use it."""
+    """The torch device of that name; UsageError when torch cannot use it."""
     import torch
 
     try:
         device = torch.device(name)
     except RuntimeError as error:
-        raise UsageError(f"torch knows no device {name!r}", "use cpu or cuda") from error
+        raise UsageError(f"Device {name!r} does not exist in torch.", "Use cpu or cuda.") from error
     if device.type == "cuda" and not torch.cuda.is_available():
-        raise UsageError(f"torch finds no CUDA device for {name!r}", "use --device cpu")
+        raise UsageError(f"Device {name!r}: torch finds no CUDA device.", "Use --device cpu.")
     return device

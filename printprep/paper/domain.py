@@ -1,7 +1,7 @@
-"""The voxels DensiCrafter may change, and those it may not.
+"""The paper's domain: the voxels that may change, and those that may not.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code
-(github.com/idvxlab/DensiCrafter); where text and code differ the code is followed and it is said.
+(github.com/idvxlab/DensiCrafter).  Where text and code differ this follows the code and notes it.
 
 Notation: Ω the grid, O the solid, ∂O its shell, O° the interior, B the base layer,
 Ω_opt = O° ∪ B the free voxels.  Axis order x, y, z; z is up; lengths are voxels.
@@ -18,7 +18,7 @@ from printprep.arrays import Bool
 from printprep.errors import GeometryError, UsageError
 from printprep.paper.settings import PaperSettings
 
-Filling = Literal["flood", "slices"]
+FillRule = Literal["flood", "slices"]
 ShellRule = Literal["auto", "boundary", "occupied"]
 
 
@@ -27,7 +27,7 @@ class PaperDomain:
     """One object on one grid; every array is bool of the same shape (nx, ny, nz).
 
     solid : O, hole-filled.
-    shell : ∂O, part of O that is never changed.
+    shell : ∂O, the part of O that never changes.
     interior : O° = O ∖ ∂O.
     base : B, outside O; empty when the base is switched off.
     free : Ω_opt = O° ∪ B.
@@ -53,23 +53,23 @@ def build_domain(
     settings: PaperSettings,
     *,
     shell: ShellRule = "auto",
-    filling: Filling = "flood",
+    filling: FillRule = "flood",
 ) -> PaperDomain:
-    """Shell, interior and base layer of an occupancy.
+    """Find the shell, the interior and the base layer of an occupancy.
 
     Parameters
     ----------
     occupied : (nx, ny, nz) bool, a solid or only its surface voxels.
-    settings : ε, the base layer's reach, and whether there is one.
-    shell : "occupied" freezes every voxel given, which is what the authors do with a generator's
-        surface voxels; "boundary" freezes the voxels of O with one of their six neighbours outside
-        O or outside the grid, which is what they do with a solid; "auto" takes "occupied" when the
-        voxels given leave more than half of what lies behind that boundary empty.
+    settings : ε, the base layer's reach, and whether B exists.
+    shell : "occupied" freezes every voxel given, as the authors do with a generator's surface
+        voxels; "boundary" freezes the voxels of O with one of their six neighbours outside O or
+        outside the grid, as they do with a solid; "auto" takes "occupied" when the voxels given
+        leave more than half of what lies behind that boundary empty.
     filling : how O follows from the voxels given, see `fill`.
 
     Raises
     ------
-    GeometryError : nothing is occupied.
+    GeometryError : no voxel is occupied.
     UsageError : an unknown rule, or an array that is not three-dimensional bool.
     """
     _check(occupied)
@@ -82,27 +82,27 @@ def build_domain(
     if shell == "boundary":
         frozen = boundary
     elif shell == "occupied":
-        # A voxel on the boundary of the filled set is one of those given, so this adds nothing to
-        # them; it keeps a domain valid whatever rule filled it.
+        # Every voxel on the boundary of the filled set is one of those given, so the boundary adds
+        # nothing to them; it keeps a domain valid whatever rule filled it.
         frozen = boundary | occupied
     else:
-        raise UsageError(f"shell rule {shell!r} is not one of auto, boundary, occupied")
+        raise UsageError(f"Shell rule {shell!r} does not exist.", "Use auto, boundary or occupied.")
     interior = solid & ~frozen
     ground = int(np.flatnonzero(solid.any(axis=(0, 1)))[0])
     base = _base_layer(solid, ground, settings) if settings.base else np.zeros_like(solid)
     return PaperDomain(solid, frozen, interior, base, interior | base, ground)
 
 
-def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
-    """The solid O that a set of surface voxels encloses.
+def fill(occupied: Bool, filling: FillRule = "flood") -> Bool:
+    """Fill the solid O that a set of surface voxels encloses.
 
     Parameters
     ----------
     occupied : (nx, ny, nz) bool.
-    filling : "flood" adds every voxel that cannot be reached from outside the grid through face
-        neighbours.  "slices" adds every voxel that is enclosed within its x-, its y- and its
-        z-slice, each flooded on its own: the authors' rule.  It adds all that "flood" adds, and
-        also holds where a surface leaks through a small hole; but it closes winding channels.
+    filling : "flood" adds every voxel that no way through face neighbours joins to the outside of
+        the grid.  "slices" adds every voxel that is enclosed within its x-, its y- and its z-slice,
+        each flooded on its own: the authors' rule.  It adds all that "flood" adds, and also works
+        where a surface leaks through a small hole; but it closes winding channels.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
     if filling == "flood":
         return np.asarray(binary_fill_holes(occupied), dtype=bool)
     if filling != "slices":
-        raise UsageError(f"filling {filling!r} is not one of flood, slices")
+        raise UsageError(f"Filling {filling!r} does not exist.", "Use flood or slices.")
     enclosed = np.ones_like(occupied)
     for axis in range(3):
         slices = np.moveaxis(occupied, axis, 0)
@@ -125,9 +125,9 @@ def fill(occupied: Bool, filling: Filling = "flood") -> Bool:
 def _base_layer(solid: Bool, ground: int, settings: PaperSettings) -> Bool:
     """B: the voxels outside O with ground ≤ z < ground + ε and an L1 distance to O below ε.
 
-    With the reach "within", L1 distances up to and including ε.  The authors' code also measures
-    them to the lowest ε + 1 layers of O alone, which can differ under an overhang, and wraps B
-    around the edges of the grid, which is a slip.
+    With the reach "within", L1 distances up to and including ε.  The authors' code measures them to
+    the lowest ε + 1 layers of O alone, which can differ under an overhang, and wraps B around the
+    edges of the grid, which is a mistake.
 
     solid : (nx, ny, nz) bool;  returns the same shape.
     """
@@ -141,7 +141,7 @@ def _base_layer(solid: Bool, ground: int, settings: PaperSettings) -> Bool:
 
 
 def _dilate(mask: Bool) -> Bool:
-    """``mask`` and its face neighbours, within the grid."""
+    """``mask`` (nx, ny, nz) and its face neighbours, within the grid; same shape."""
     grown = mask.copy()
     for axis in range(3):
         source, target = np.moveaxis(mask, axis, 0), np.moveaxis(grown, axis, 0)
@@ -151,7 +151,10 @@ def _dilate(mask: Bool) -> Bool:
 
 
 def _erode(mask: Bool) -> Bool:
-    """The voxels of ``mask`` whose six face neighbours are in it too; the grid's edge is not."""
+    """The voxels of ``mask`` (nx, ny, nz) whose six face neighbours all belong to it; same shape.
+
+    Beyond the grid nothing belongs to it.
+    """
     padded = np.pad(mask, 1)
     core = mask.copy()
     for axis in range(3):
@@ -163,9 +166,10 @@ def _erode(mask: Bool) -> Bool:
 
 
 def _check(occupied: Bool) -> None:
+    """Raise unless ``occupied`` is bool of shape (nx, ny, nz) with a voxel in it."""
     if occupied.ndim != 3 or occupied.dtype != np.bool_:
         raise UsageError(
-            f"occupancy is {occupied.dtype} of shape {occupied.shape}, not bool (nx, ny, nz)"
+            f"The occupancy is {occupied.dtype} of shape {occupied.shape}, not bool (nx, ny, nz)."
         )
     if not occupied.any():
-        raise GeometryError("the voxel grid is empty: no voxel is occupied")
+        raise GeometryError("The voxel grid is empty: no voxel is occupied.")

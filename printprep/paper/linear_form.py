@@ -1,13 +1,13 @@
-"""s and the ground layer as linear functions of the free densities: no convolution, no autograd.
+"""The paper's objective over the free densities, through functions that are linear in them.
 
 Mass and first moments of ρ̃ are linear in ρ, so with the kernel's adjoint applied once to
 (1, x, y, z) on the free voxels
 
     s = (M, M c_x, M c_y, M c_z) = s₀ + W ρ,        W : 4 × n,
 
-and the gradient of every free voxel is the 4-vector ∂L/∂s times its column of W.  What else the
-loss needs is the soft contact g (see `objective`), which only a few voxels near the ground can
-raise; for them ρ̃ = r₀ + K ρ with K the rows of the kernel.
+and the gradient of every free voxel is the 4-vector ∂L/∂s times its column of W: no convolution, no
+autograd.  Beside s the loss needs only the soft contact g (see `objective`), which few voxels near
+the ground can raise; for them ρ̃ = r₀ + K ρ with K the rows of the kernel.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from printprep.paper.settings import PaperSettings
 from printprep.paper.smoothing import box_mean, smooth
 
 AROUND = np.stack(np.meshgrid(*[[0, 1, 2]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-"""The kernel's 27 voxels, as offsets into a grid padded by one."""
+"""(27, 3) the kernel's voxels, as offsets into a grid padded by one."""
 
 DECAY = 4.0  # the soft contact's loss per layer above ground, authors' code
 
@@ -38,12 +38,12 @@ class LinearForm:
     reference : (3,) float64 voxel indices of the origin of s and columns: the grid's middle in x
         and y, the ground layer in z.
     s0 : (4,) float64;  W : (4, n) float64.
-    columns : (C, 2) float64 relative to reference, the C_open that can change first.
-    floor : (C,) float64, the contact the shell gives.
-    contenders : (m,) int64 into the n, the free voxels that can raise their column above its floor.
+    columns : (C, 2) float64 x, y relative to reference; the C_open that can change come first.
+    floor : (C,) float64, the contact from the shell.
+    contenders : (m,) int64, indices of the free voxels that can raise their column above its floor.
     r0 : (m,) float64, ρ̃ of the contenders at ρ = 0;  decay : (m,) float64, 4^(−k).
-    neighbours : (m, 27 or 1) int64 into the n, n itself for a voxel that is not free.
-    slots : (C_open, E) int64 into the m, m itself for an empty slot.
+    neighbours : (m, 27 or 1) int64, indices of free voxels, n for a voxel that is not free.
+    slots : (C_open, E) int64, indices of contenders, m for an empty slot.
     """
 
     domain: PaperDomain
@@ -68,7 +68,7 @@ class LinearForm:
 
     def moments(self, rho: Float) -> Float:
         """(4,) s of the free densities (n,)."""
-        # einsum sums in one thread and one order; a threaded BLAS has neither, and is no faster.
+        # einsum sums in one thread and one order; a threaded BLAS does not, and is no faster.
         s: Float = self.s0 + np.einsum("kn,n->k", self.W, rho)
         return s
 
@@ -80,7 +80,7 @@ class LinearForm:
         return lifted
 
     def ground(self, contact: Float) -> Float:
-        """(C,) g, from the contenders' values (m,)."""
+        """(C,) g, from the contenders' contact (m,)."""
         g = self.floor.copy()
         opened = len(self.slots)
         if opened:
@@ -89,15 +89,16 @@ class LinearForm:
         return g
 
     def terms(self, rho: Float) -> Terms:
-        """Loss terms at the free densities (n,)."""
+        """The loss terms at the free densities (n,)."""
         g = self.ground(self.contact(rho))
         return terms(self.moments(rho), g, self.columns, self.settings)
 
     def pull(self, s: Float, contact: Float) -> tuple[Terms, Float, Float]:
-        """The loss terms, q = ∂L/∂s (4,) and ∂L/∂ρ̃ of the contenders (m,), from s and contact.
+        """The loss terms, q = ∂L/∂s (4,) and ∂L/∂ρ̃ of the contenders (m,).
 
-        Where several layers of a column tie for the contact the lowest takes the gradient, and
-        none does when the shell's floor is at least as high.
+        s : (4,);  contact : (m,).
+        Where several layers of a column tie for the contact, the lowest takes the gradient; none
+        does when the shell's floor is at least as high.
         """
         g = self.floor.copy()
         opened = len(self.slots)
@@ -137,10 +138,10 @@ class LinearForm:
 def linear_form(
     domain: PaperDomain, settings: PaperSettings, frozen: Float | None = None
 ) -> LinearForm:
-    """The linear form of a domain.
+    """Build the linear form of a domain.
 
     frozen : (nx, ny, nz) float64, ρ of the voxels that are not free; None for 1 on the shell and 0
-        elsewhere (Adam's reproduction freezes the noisy sigmoids the authors' code starts from).
+        elsewhere (Adam freezes the noisy sigmoids that the authors' code starts from).
     """
     rho0 = np.where(domain.free, 0.0, domain.shell if frozen is None else frozen)
     voxels = np.argwhere(domain.free)
@@ -178,7 +179,10 @@ def linear_form(
 def _moment_rows(
     domain: PaperDomain, settings: PaperSettings, rho0: Float, reference: Float
 ) -> tuple[Float, Float]:
-    """s₀ and W: the adjoint of the smoothing applied to (1, x, y, z) on the free voxels."""
+    """s₀ (4,) and W (4, n): the smoothing's adjoint, applied to (1, x, y, z) on the free voxels.
+
+    rho0 : (nx, ny, nz), ρ of the frozen voxels;  reference : (3,).
+    """
     used = np.argwhere(domain.shell | domain.free)
     # Frozen voxels one step outside O ∪ B still reach into it through the kernel.
     low = np.maximum(used.min(axis=0) - 1, 0)
@@ -200,7 +204,7 @@ def _moment_rows(
 
 
 def _neighbours(domain: PaperDomain, at: Int) -> Int:
-    """(m, 27) numbers of the free voxels around the voxels (m, 3), n where one is not free."""
+    """(m, 27) indices of the free voxels around the voxels (m, 3), n where one is not free."""
     n = int(np.count_nonzero(domain.free))
     number = np.full(tuple(length + 2 for length in domain.shape), n, dtype=np.int64)
     number[1:-1, 1:-1, 1:-1][domain.free] = np.arange(n)
@@ -209,7 +213,11 @@ def _neighbours(domain: PaperDomain, at: Int) -> Int:
 
 
 def _ground(domain: PaperDomain, rho0: Float) -> tuple[Float, Float, Int, Float, Int]:
-    """Columns (open ones first) and their floors, the contenders with 4^(−k), and their slots."""
+    """Columns (C, 2), the open ones first, their floors (C,), the contenders (m,), their 4^(−k)
+    (m,), and the slots (C_open, E).
+
+    rho0 : (nx, ny, nz), ρ of the frozen voxels.
+    """
     free = domain.free[:, :, domain.ground :]
     layers = DECAY ** -np.arange(free.shape[2], dtype=np.float64)
     shell = np.where(domain.shell, rho0, 0.0)[:, :, domain.ground :]

@@ -1,7 +1,7 @@
-"""The paper's objective: value and gradient in closed form, in the space of s and g.
+"""The paper's objective: value and gradient in closed form, as functions of s and g.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code
-(github.com/idvxlab/DensiCrafter).  The code is followed where the two differ:
+(github.com/idvxlab/DensiCrafter).  Where the two differ this follows the code:
 
 - L_mass is the mean of ρ̃ over the N³ voxels of the grid (paper: the integral ∫ρ̃ dV);
 - all lengths are voxels, and L_z is measured from the ground layer;
@@ -29,9 +29,9 @@ TINY = 1e-300  # in place of a distance of 0, whose offset is 0 too
 
 @dataclass(frozen=True)
 class Terms:
-    """The loss and its parts, each in the units of the paper's code; dropped terms are 0.
+    """The parts of the loss, in the units of the paper's code; dropped terms are 0.
 
-    mass is λ L_mass, the others carry weight 1.
+    mass is λ L_mass, the others have weight 1.
     """
 
     center: float
@@ -41,7 +41,7 @@ class Terms:
 
     @property
     def total(self) -> float:
-        """L."""
+        """L, the loss."""
         return self.center + self.region + self.height + self.mass
 
 

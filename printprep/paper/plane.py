@@ -1,17 +1,17 @@
-"""The paper's objective solved exactly: the cavity is the interior above a plane.
+"""Solve the paper's objective exactly: the cavity is the interior above a plane.
 
-The loss depends on ρ through s = (M, M c) and the soft contact alone, so at a stationary point
-each free voxel is 0 or 1 by the sign of its gradient q · W_i, an affine function of position where
-the kernel's neighbourhood is free.  (Hafner et al., "Spin-It Faster", 2024, prove the sibling for
+The loss depends on ρ only through s = (M, M c) and the soft contact, so at a stationary point each
+free voxel is 0 or 1 by the sign of its gradient q · W_i, an affine function of position where the
+kernel's neighbourhood is free.  (Hafner et al., "Spin-It Faster", 2024, prove the sibling for
 second moments, where the interface is a quadric; Prévost et al., "Make It Stand", SIGGRAPH 2013,
 carve along a plane.)
 
-Each step goes to the vertex ρ' = [gradient < 0] by an exact line search on the segment (the
+Each step goes toward the vertex ρ' = [gradient < 0] by an exact line search on the segment (the
 conditional-gradient method of Frank & Wolfe, 1956), on which s is four scalars that move linearly.
 The contact is a maximum, so the loss can have more than one stationary point: the solver starts
-from the bare shell, as the authors do, and from everything filled, and keeps the better end.  On a
-symmetric model a whole layer can tie on the plane and the optimum lie between filling and leaving
-it; such a layer is left fractional, and said to be.
+from the bare shell, as the authors do, and from everything filled, and keeps the better result.  On
+a symmetric model a whole layer can tie on the plane, with the optimum between full and empty; such
+a layer stays fractional, and `PaperSolution.fractional` counts it.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ from printprep.types import Grid, Plane
 MAX_STEPS = 60
 GAP = 1e-9  # stop when the linear model promises less than this share of the loss
 STALL = 1e-8, 3  # stop after this many steps in a row that each gain less than this share
-ROUNDING = 1e-8  # share of the loss that leaving no voxel fractional may cost
+ROUNDING = 1e-8  # share of the loss that rounding all voxels to 0 or 1 may cost
 SAMPLES = 17  # of the segment, before the best bracket is refined
-SHARE = 1e-10  # of the segment, to which its least loss is located
-END = 1e-4  # a segment whose end is better than this far before it is taken to its end
+SHARE = 1e-10  # precision of the least loss on a segment, as a share of it
+END = 1e-4  # go to a segment's end when that is better than this share before it
 
 
 @dataclass(frozen=True)
 class VoxelPlane:
-    """The half-space {v : normal · v > offset} of voxel indices v that stays empty.
+    """The half-space {v : normal · v > offset} of voxel indices v; it stays empty.
 
     normal : unit length;  offset : voxels.
     """
@@ -49,7 +49,7 @@ class VoxelPlane:
     offset: float
 
     def in_mm(self, grid: Grid) -> Plane:
-        """The same plane in the coordinates of ``grid``, at any resolution a cut is wanted."""
+        """The same plane in the coordinates of ``grid``; it cuts at any resolution."""
         start = float(np.dot(self.normal, grid.origin_mm))
         return Plane(self.normal, start + grid.pitch_mm * self.offset)
 
@@ -60,8 +60,8 @@ class PaperSolution:
 
     rho : (nx, ny, nz) float64 in [0, 1], before smoothing;  smoothed : ρ̃, same shape.
     material : V = {ρ̃ > 0.5}, bool;  cavity : H = {v ∈ O : ρ̃ ≤ 0.5}, bool.
-    plane : above it the voxels are empty; None when the objective favours no half-space, or when
-        nothing is free, or for a solver that does not know one.
+    plane : above it the voxels are empty; None when the objective prefers no half-space, when no
+        voxel is free, or when the solver finds no plane.
     terms : the loss at the result;  trace : (k,) float64, the loss at each step.
     fractional : free voxels with ρ strictly between 0 and 1.
     """
@@ -77,7 +77,7 @@ class PaperSolution:
 
 
 def solve_plane(domain: PaperDomain, settings: PaperSettings) -> PaperSolution:
-    """The density that minimizes the paper's objective on a domain; deterministic.
+    """Find the density that minimizes the paper's objective on a domain; deterministic.
 
     A domain without free voxels gives the shell, and no plane.
     """
@@ -96,7 +96,10 @@ def solve_plane(domain: PaperDomain, settings: PaperSettings) -> PaperSolution:
 
 
 def package(form: LinearForm, rho: Float, trace: Float, plane: VoxelPlane | None) -> PaperSolution:
-    """A solution on the grid, from the free densities (n,)."""
+    """A solution on the grid.
+
+    rho : (n,) free densities;  trace : (k,) the loss at each step.
+    """
     whole = form.frozen.copy()
     whole[tuple(form.voxels.T)] = rho
     smoothed = form.field(rho)
@@ -114,7 +117,10 @@ def package(form: LinearForm, rho: Float, trace: Float, plane: VoxelPlane | None
 
 
 def _descend(form: LinearForm, start: Float) -> tuple[Float, Float]:
-    """Free densities (n,) at a stationary point and the loss at every step on the way."""
+    """Free densities (n,) at a stationary point, and the loss (k,) at every step to it.
+
+    start : (n,) free densities.
+    """
     rho = start
     trace = [form.terms(rho).total]
     small, patience = STALL
@@ -135,9 +141,9 @@ def _descend(form: LinearForm, start: Float) -> tuple[Float, Float]:
 
 
 def _line_search(form: LinearForm, rho: Float, vertex: Float) -> tuple[float, float]:
-    """The least loss on the segment from ``rho`` to ``vertex``, and the share of the way there.
+    """The least loss on the segment from ``rho`` (n,) to ``vertex`` (n,), and its share of the way.
 
-    Along it s is linear and each column's contact is the largest of a few linear functions.
+    On the segment s is linear, and each column's contact is the largest of a few linear functions.
     """
     s0, s1 = form.moments(rho), form.moments(vertex)
     e0, e1 = form.contact(rho), form.contact(vertex)
@@ -151,7 +157,7 @@ def _line_search(form: LinearForm, rho: Float, vertex: Float) -> tuple[float, fl
 
 
 def _minimize(loss: Callable[[float], float]) -> tuple[float, float]:
-    """(least value, where) of a function on [0, 1]: sampled, then Brent's method in the bracket."""
+    """Least value of a function on [0, 1], and its place: by samples, then by Brent's method."""
     from scipy.optimize import minimize_scalar
 
     grid = np.linspace(0.0, 1.0, SAMPLES)
@@ -166,7 +172,7 @@ def _minimize(loss: Callable[[float], float]) -> tuple[float, float]:
 
 
 def _plane(form: LinearForm, rho: Float) -> VoxelPlane | None:
-    """The plane q · (1, v) = 0 at a stationary point, in voxel indices."""
+    """The plane q · (1, v) = 0 at a stationary point (n,), in voxel indices."""
     if not form.count:
         return None
     _, q = form.gradient(rho)

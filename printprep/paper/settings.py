@@ -1,4 +1,4 @@
-"""Parameters of the paper's optimization, with its values as defaults.
+"""Parameters of the paper's optimization, with the paper's values as defaults.
 
 Source: Dang et al., "DensiCrafter", AAAI 2026, arXiv 2511.09298, and the authors' published code
 (github.com/idvxlab/DensiCrafter).
@@ -22,13 +22,13 @@ class PaperSettings:
     resolution : N, voxels along the grid's edge; L_mass is a mean over N³.
     mass_weight : λ.
     epsilon : ε, voxels: height of the base layer B, and the bound on its L1 distance to O.
-    base_reach : "below" keeps B at L1 distances below ε, as the paper says; "within" lets it have
-        ε itself too, as the authors' code does, which makes B twice as wide at ε = 2.
-    seed, steps, rate : of Adam; the paper's text has a rate of 1e-2, the authors' code 0.05.
+    base_reach : "below" keeps B at L1 distances below ε, as the paper says; "within" includes ε
+        itself, as the authors' code does, which makes B twice as wide at ε = 2.
+    seed, steps, rate : of Adam; the paper's text gives a rate of 1e-2, the authors' code 0.05.
     center, region, height, mass : False drops L_center, L_region, L_z, L_mass.
     smoothing : False takes ρ̃ = ρ;  base : False leaves B empty.
 
-    Raises UsageError for a value that cannot be meant.
+    Raises UsageError for an invalid value.
     """
 
     resolution: int = 64
@@ -49,13 +49,17 @@ class PaperSettings:
         for name, low in (("resolution", 1), ("epsilon", 0), ("steps", 1), ("seed", 0)):
             value = getattr(self, name)
             if value < low:
-                raise UsageError(f"{name} is {value}", f"give a whole number of at least {low}")
+                raise UsageError(
+                    f"{name}={value} is too small.", f"Use a whole number of at least {low}."
+                )
         if not (math.isfinite(self.mass_weight) and self.mass_weight >= 0):
-            raise UsageError(f"mass_weight is {self.mass_weight}", "give a number of at least 0")
+            raise UsageError(
+                f"mass_weight={self.mass_weight} is invalid.", "Use a number of at least 0."
+            )
         if not (math.isfinite(self.rate) and self.rate > 0):
-            raise UsageError(f"rate is {self.rate}", "give a number above 0")
+            raise UsageError(f"rate={self.rate} is invalid.", "Use a number above 0.")
         if self.base_reach not in get_args(Reach):
-            raise UsageError(f"base_reach is {self.base_reach!r}", "give below or within")
+            raise UsageError(f"base_reach={self.base_reach!r} is invalid.", "Use below or within.")
 
     @property
     def mass_slope(self) -> float:

@@ -1,7 +1,7 @@
 """ρ̃, the smoothed density: ρ on the shell, the 3×3×3 mean of ρ on the free voxels, 0 elsewhere.
 
-Source: Dang et al., arXiv 2511.09298; the authors' code pads the grid with zeros, and so do we.
-The kernel is symmetric, so the mean is its own adjoint: that is all the linear form needs.
+Source: Dang et al., arXiv 2511.09298.  As in the authors' code, the grid is padded with zeros.  The
+kernel is symmetric, so the mean is its own adjoint: that is all the linear form needs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def box_mean(field: Float) -> Float:
 
 
 def smooth(rho: Float, domain: PaperDomain, *, smoothing: bool = True) -> Float:
-    """ρ̃ of a density.
+    """Smooth a density: ρ̃.
 
     rho : (nx, ny, nz) float64 in [0, 1], frozen voxels included;
     smoothing : False gives ρ itself on O ∪ B (the paper's ablation "without smoothing").

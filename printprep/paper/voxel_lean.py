@@ -1,10 +1,10 @@
-"""The lean program in the paper's voxel picture: interior and base layer, exact voxel moments.
+"""The lean program on the paper's voxels: interior and base layer, exact voxel moments.
 
-Whether the base layer is there is decided before the program, as everywhere in this house: the
-support polygon the program works with must have material under it.  So B's voxels in the ground
-layer are a footprint, given and full, of which a few are tried (none, all, and where there is one
-to match, another method's), and the lightest result counts.  B's voxels above the ground layer are
-free, like the interior.  The footprint "none" leaves B out altogether.
+The base layer is chosen before the program, as everywhere in printprep: the program's support
+polygon must have material under it.  So B's voxels in the ground layer are a footprint, given and
+full.  A few footprints are tried (none, all, and where a method is to be matched, its own), and the
+lightest result counts.  B's voxels above the ground layer are free, like the interior.  The
+footprint "none" leaves out B altogether.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-# A footprint is larger for a reason: by at least this share of the mass.
+# A later footprint must save at least this share of the mass.
 _TIE = 1e-9
 
 
@@ -33,8 +33,8 @@ _TIE = 1e-9
 class Leanest:
     """The lightest density found.
 
-    weight : (nx, ny, nz) float64 in [0, 1], a few voxels at most between the two.
-    reachable_deg : the largest lean of any filling where the lean asked for is out of reach.
+    weight : (nx, ny, nz) float64 in [0, 1], at most a few voxels between the two.
+    reachable_deg : largest lean of any filling; None when the lean asked for is feasible.
     """
 
     weight: Float
@@ -42,13 +42,13 @@ class Leanest:
 
 
 def footprints(domain: PaperDomain) -> list[NDArray[np.bool_]]:
-    """None of B's ground layer, and all of it; (nx, ny) bool each."""
+    """The footprints to try, (nx, ny) bool each: none of B's ground layer, and all of it."""
     whole = domain.base[:, :, domain.ground]
     return [np.zeros_like(whole), whole] if whole.any() else [whole]
 
 
 def leanest(domain: PaperDomain, lean_deg: float, choices: Sequence[NDArray[np.bool_]]) -> Leanest:
-    """The lightest density that stands at a lean, over all footprints (nx, ny) bool.
+    """Find the lightest density that stands at a lean, over footprints (nx, ny) bool.
 
     Where no footprint reaches the lean, the one that reaches farthest, solved as ``solve_lean``
     does.
@@ -57,11 +57,12 @@ def leanest(domain: PaperDomain, lean_deg: float, choices: Sequence[NDArray[np.b
     for footprint in choices:
         best = _better(best, _on_footprint(domain, lean_deg, footprint))
     if best is None:
-        raise ValueError("there is no footprint to choose from")
+        raise ValueError("No footprint is given.")
     return best
 
 
 def _on_footprint(domain: PaperDomain, lean_deg: float, footprint: NDArray[np.bool_]) -> Leanest:
+    """The lightest density on one footprint (nx, ny) bool."""
     fixed = domain.shell.copy()
     fixed[:, :, domain.ground] |= footprint
     free = domain.interior.copy()
@@ -83,13 +84,12 @@ def _better(first: Leanest | None, second: Leanest) -> Leanest:
     """The lighter of two that reach the lean, else the one that reaches farther."""
     if first is None:
         return second
-    reached = [
-        np.inf if one.reachable_deg is None else one.reachable_deg for one in (first, second)
-    ]
-    if reached[0] != reached[1]:
-        return second if reached[1] > reached[0] else first
+    reached, farther = _reached(first), _reached(second)
+    if reached != farther:
+        return second if farther > reached else first
     return second if second.weight.sum() < first.weight.sum() * (1 - _TIE) else first
 
 
 def _reached(found: Leanest) -> float:
+    """The lean it reaches, in degrees; +inf when that is the lean asked for."""
     return np.inf if found.reachable_deg is None else found.reachable_deg

@@ -14,7 +14,7 @@ import numpy as np
 
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import isosurface
-from printprep.drainage.part import Drainer
+from printprep.drainage.drainer import Drainer
 from printprep.grid.distance import DepthField
 from printprep.objectives import objective_of
 from printprep.pipeline.filled import Filled

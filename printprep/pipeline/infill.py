@@ -77,7 +77,7 @@ def _only_estimated(has_slicer: bool) -> Finding:
     if has_slicer:
         why, fix = "A body does not touch the bed", "Give it a base (--base auto)."
     else:
-        why, fix = "No slicer was found", f"{INSTALL_HINT[0].upper()}{INSTALL_HINT[1:]}."
+        why, fix = "No slicer was found", INSTALL_HINT
     return finding(
         "infill-estimated",
         f"{why}: mass and tilt angle are estimated, not measured in the G-code.",

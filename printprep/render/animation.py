@@ -1,8 +1,7 @@
-"""A film of a part as a moving GIF, or as a strip of stills: our own pixels, the same every time.
+"""Draws the film of a falling part as a GIF or as a strip of stills; the same film, the same bytes.
 
-Seen from the side, so that the fall goes across the picture: the bed leans down to the right.
-Parallel projection; the bed is a slab, its colour tells it from the part, a soft shadow where the
-part is over it.
+The view is from the side, so that the fall goes across the picture: the bed leans down to the
+right.  Parallel projection; the bed is a slab in another colour, with a soft shadow of the part.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import numpy as np
 
 from printprep.mesh.measure import arrays
 from printprep.render.raster import coverage, rasterize
-from printprep.render.shading import along, blur, corner_normals, lit, to_srgb, unit
+from printprep.render.shading import blur, camera, corner_normals, dot, normalized, shaded, to_srgb
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
@@ -27,8 +26,8 @@ GIF_SIZE, STRIP_SIZE, STRIP_STILLS = 320, 280, 6
 GIF_FRAMES_PER_S, STRIP_FRAMES_PER_S = 12.5, 50.0  # a GIF counts in hundredths of a second
 
 _OVERSAMPLING = 2
-_AZIMUTH_DEG, _ELEVATION_DEG = -60.0, 14.0  # of the eye, as the lamps are placed for
-_SWING_DEG = 12.0  # the eye is so far off the side, towards where the bed leans
+_AZIMUTH_DEG, _ELEVATION_DEG = -60.0, 14.0  # of the eye, to which the lamps are placed
+_SWING_DEG = 12.0  # how far the eye is off the side, toward the azimuth of the lean
 _PART = np.array([0.95, 0.33, 0.06])  # linear light: printed orange
 _BED = np.array([0.30, 0.34, 0.40])
 _PAPER = np.array([0.93, 0.94, 0.95])
@@ -36,17 +35,17 @@ _INK = (60, 66, 74)
 _SHADOW, _SHADOW_BLUR = 0.45, 0.012
 _BED_THICKNESS = 0.03  # of the bed's radius
 _MARGIN = 0.05
-_DETAIL = 1 / 500  # of the part's size: what is too small to be seen
+_DETAIL = 1 / 500  # of the part's size: smaller details are not visible
 _COLOURS = 128
 
 
 def gif_bytes(film: Film, size: int = GIF_SIZE) -> bytes:
-    """The film as an endless GIF of `size` × `size` pixels; it rests on the last frame."""
+    """The film as an endless GIF of `size` × `size` pixels, with a pause on the last frame."""
     from PIL import Image
 
     stage = _stage(film, size)
     pictures = [_still(stage, frame) for frame in film.frames]
-    # One palette for all, made from frames spread over the film, or colours would flicker.
+    # One palette for all frames, made from some of them; with several, colours would flicker.
     sample = _beside([pictures[at] for at in _spread(len(pictures), STRIP_STILLS)])
     palette = sample.quantize(_COLOURS)
     indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
@@ -59,16 +58,21 @@ def gif_bytes(film: Film, size: int = GIF_SIZE) -> bytes:
 
 
 def strip_bytes(film: Film, size: int = STRIP_SIZE, stills: int = STRIP_STILLS) -> bytes:
-    """Stills side by side as a PNG: rest, lean, tipping, and the fall at even turns."""
+    """Stills side by side as a PNG: rest, lean, tipping, and the fall at even angles."""
     stage = _stage(film, size)
     out = BytesIO()
-    _beside([_still(stage, film.frames[at]) for at in _telling(film, stills)]).save(out, "PNG")
+    _beside([_still(stage, film.frames[at]) for at in _key_frames(film, stills)]).save(out, "PNG")
     return out.getvalue()
 
 
 @dataclass(frozen=True, eq=False)
 class _Stage:
-    """All that stays the same from frame to frame."""
+    """Everything that stays the same from frame to frame.
+
+    vertices : (n, 3) mm, faces : (m, 3), normals : (m, 3) and corner_normals : (m, 3, 3) of the
+    part;  bed : (b, 3) mm and bed_faces : (c, 3);  pivot : (3,) mm, middle of the bed;  right, up,
+    eye : (3,) unit vectors of the view;  scale : pixels per mm;  shift : (2,) pixels.
+    """
 
     vertices: Float
     faces: Int
@@ -87,10 +91,11 @@ class _Stage:
 
 
 def _stage(film: Film, size: int) -> _Stage:
+    """The stage of a film, with a scale at which all its frames fit into the picture."""
     x0, y0, z0, x1, y1, z1 = film.body.bounding_box()
     body = film.body.simplify(max(x1 - x0, y1 - y0, z1 - z0) * _DETAIL)
     vertices, faces = arrays(body)
-    right, up, eye = _camera()
+    right, up, eye = camera(_AZIMUTH_DEG, _ELEVATION_DEG)
     everywhere = np.concatenate([_placed(vertices, frame) for frame in film.frames[::3]])
     over = everywhere[:, :2]
     middle = np.array([*(over.min(axis=0) + over.max(axis=0)) / 2, 0.0])
@@ -101,7 +106,7 @@ def _stage(film: Film, size: int) -> _Stage:
         turn = _leaning(film.azimuth_deg, frame.lean_deg)
         for points in (_placed(vertices, frame), bed):
             world = (points - middle) @ turn.T
-            seen.append(np.column_stack([along(world, right), -along(world, up)]))
+            seen.append(np.column_stack([dot(world, right), -dot(world, up)]))
     flat = np.concatenate(seen)
     low, high = flat.min(axis=0), flat.max(axis=0)
     pixels = size * _OVERSAMPLING
@@ -126,7 +131,7 @@ def _stage(film: Film, size: int) -> _Stage:
 
 
 def _still(stage: _Stage, frame: Frame) -> Picture:
-    """One frame, with the bed's lean written in the corner."""
+    """The picture of one frame, with the lean of the bed written in a corner."""
     from PIL import Image, ImageDraw, ImageFont
 
     turn = _leaning(stage.azimuth_deg, frame.lean_deg)
@@ -137,12 +142,12 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
 
     bed_normals, bed_corner_normals = corner_normals(bed, stage.bed_faces)
     turned = turn @ frame.rotation
-    part_front = along(stage.normals @ turned.T, stage.eye) > 0
-    bed_front = along(bed_normals, stage.eye) > 0
+    part_front = dot(stage.normals @ turned.T, stage.eye) > 0
+    bed_front = dot(bed_normals, stage.eye) > 0
     part_faces, bed_faces = stage.faces[part_front], stage.bed_faces[bed_front]
     corners = np.concatenate([_flat(part, stage)[part_faces], _flat(bed, stage)[bed_faces]])
     depth = np.concatenate(
-        [along(p, stage.eye)[f] for p, f in ((part, part_faces), (bed, bed_faces))]
+        [dot(p, stage.eye)[f] for p, f in ((part, part_faces), (bed, bed_faces))]
     )
     normals = np.concatenate(
         [stage.corner_normals[part_front] @ turned.T, bed_corner_normals[bed_front]]
@@ -150,8 +155,8 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
     hits = rasterize(corners, depth, stage.size)
     is_part = hits.triangle < len(part_faces)
     colour = np.where(is_part[:, None], _PART, _BED)
-    normal = unit((normals[hits.triangle] * hits.weights[:, :, None]).sum(axis=1))
-    light = lit(normal, stage.eye, colour)
+    normal = normalized((normals[hits.triangle] * hits.weights[:, :, None]).sum(axis=1))
+    light = shaded(normal, stage.eye, colour)
     shadow = coverage(_flat(shade, stage)[stage.faces], stage.size).astype(np.float64)
     shadow = blur(shadow, round(_SHADOW_BLUR * stage.size)).ravel()[hits.pixel]
     light = light * np.where(is_part, 1.0, 1.0 - _SHADOW * shadow)[:, None]
@@ -168,17 +173,8 @@ def _still(stage: _Stage, frame: Frame) -> Picture:
     return picture
 
 
-def _camera() -> tuple[Float, Float, Float]:
-    """Right, up and the way to the eye."""
-    azimuth, elevation = np.radians([_AZIMUTH_DEG, _ELEVATION_DEG])
-    level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-    eye = np.cos(elevation) * level + np.array([0.0, 0.0, np.sin(elevation)])
-    right = np.array([-level[1], level[0], 0.0])
-    return right, np.cross(eye, right), eye
-
-
 def _leaning(azimuth_deg: float, lean_deg: float) -> Float:
-    """(3, 3) from the level bed to the bed as it leans, to the right of the picture."""
+    """(3, 3) rotation from the level bed to the leaning one, which leans to the right."""
     azimuth = np.radians(azimuth_deg)
     lean = _turn(np.array([-np.sin(azimuth), np.cos(azimuth), 0.0]), lean_deg)
     to_the_right = _AZIMUTH_DEG + 90.0 - _SWING_DEG - azimuth_deg
@@ -186,7 +182,7 @@ def _leaning(azimuth_deg: float, lean_deg: float) -> Float:
 
 
 def _turn(axis: Float, angle_deg: float) -> Float:
-    """(3, 3) rotation about a unit axis (Rodrigues)."""
+    """(3, 3) rotation about a unit axis (3,) (Rodrigues)."""
     angle = np.radians(angle_deg)
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -194,17 +190,21 @@ def _turn(axis: Float, angle_deg: float) -> Float:
 
 
 def _placed(vertices: Float, frame: Frame) -> Float:
+    """(n, 3) mm, vertices (n, 3) at their place in a frame, over the level bed."""
     return np.asarray(vertices @ frame.rotation.T + frame.shift_mm)
 
 
 def _flat(points: Float, stage: _Stage) -> Float:
-    """(n, 2) pixels, x to the right and y down."""
-    plane = np.column_stack([along(points, stage.right), -along(points, stage.up)])
+    """(n, 2) pixels of points (n, 3) mm, x to the right and y down."""
+    plane = np.column_stack([dot(points, stage.right), -dot(points, stage.up)])
     return plane * stage.scale + stage.shift
 
 
 def _slab(middle: Float, radius: float) -> tuple[Float, Int]:
-    """A round plate whose upper side is the bed; rings of small triangles draw fastest."""
+    """(b, 3) mm, vertices, and (c, 3), faces of a round plate whose upper side is the bed.
+
+    middle : (3,) mm.  Rings of small triangles draw faster than few large ones.
+    """
     radii = radius * np.array([*np.linspace(0.0, 1.0, 13), 1.0])
     heights = np.array([*np.zeros(13), -_BED_THICKNESS * radius])
     around = np.arange(96) * (2 * np.pi / 96)
@@ -223,8 +223,8 @@ def _slab(middle: Float, radius: float) -> tuple[Float, Int]:
     return rings.reshape(-1, 3), quads.reshape(-1, 3)
 
 
-def _telling(film: Film, stills: int) -> list[int]:
-    """Frames that tell the story: half up to the tipping point, half over the fall."""
+def _key_frames(film: Film, stills: int) -> list[int]:
+    """Indices of frames for the stills: half up to the tipping point, half over the fall."""
     tilt = np.array([frame.tilt_deg for frame in film.frames])
     leaves = int(np.argmax(tilt > 2.0)) if (tilt > 2.0).any() else len(tilt) - 1
     before = stills // 2
@@ -235,10 +235,12 @@ def _telling(film: Film, stills: int) -> list[int]:
 
 
 def _spread(count: int, wanted: int) -> list[int]:
+    """Indices of about ``wanted`` frames, evenly spread over ``count``."""
     return sorted({round(at) for at in np.linspace(0, count - 1, wanted)})
 
 
 def _beside(pictures: list[Picture]) -> Picture:
+    """The pictures side by side in one."""
     from PIL import Image
 
     width, height = pictures[0].size

@@ -1,7 +1,7 @@
-"""Triangles to pixels in numpy: a z-buffer without a graphics card, the same on every run.
+"""Turns triangles into pixels in numpy: a z-buffer without a graphics card, the same on every run.
 
-Triangles are spread over the pixels of their bounding boxes in batches of bounded memory; a pixel
-goes to the nearest triangle over its centre, and to the one with the lower index on a tie.
+Each triangle is tested at the pixels of its bounding box, in batches of bounded memory; a pixel
+gets the nearest triangle over its centre, and the one with the lower index on a tie.
 
 Source: the edge-function test of J. Pineda, "A parallel algorithm for polygon rasterization",
 SIGGRAPH 1988.
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
+
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
 
@@ -23,9 +25,10 @@ _BATCH_PIXELS = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """What each pixel sees; arrays of shape (k,), one entry for every pixel that sees anything.
+    """The triangle that each pixel shows; one entry for every pixel that shows one.
 
-    pixel : row · size + column;  triangle : index;  weights : (k, 3) barycentric coordinates.
+    pixel : (k,) row · size + column;  triangle : (k,) index;  weights : (k, 3) barycentric
+    coordinates.
     """
 
     pixel: Int
@@ -34,9 +37,9 @@ class Hits:
 
 
 def rasterize(corners: Float, depth: Float, size: int) -> Hits:
-    """Nearest triangle of every pixel of a `size` × `size` image.
+    """The nearest triangle at every pixel of a `size` × `size` image.
 
-    corners : (m, 3, 2), x to the right and y down, in pixels, pixel centres at halves;
+    corners : (m, 3 corners, 2), x to the right and y down, in pixels, pixel centres at halves;
     depth : (m, 3), larger is nearer.
     """
     nearest = np.full(size * size, -np.inf)
@@ -46,7 +49,7 @@ def rasterize(corners: Float, depth: Float, size: int) -> Hits:
         pixel, triangle, z = pixel[closer], triangle[closer], z[closer]
         before = nearest.copy()
         np.maximum.at(nearest, pixel, z)
-        owner[nearest > before] = len(corners)  # a nearer one came: earlier owners lose it
+        owner[nearest > before] = len(corners)  # earlier owners lose it to a nearer triangle
         wins = z == nearest[pixel]
         np.minimum.at(owner, pixel[wins], triangle[wins])
     pixel = np.flatnonzero(owner < len(corners))
@@ -56,7 +59,7 @@ def rasterize(corners: Float, depth: Float, size: int) -> Hits:
 
 
 def coverage(corners: Float, size: int) -> Bool:
-    """Which pixels any triangle covers, (size, size); arguments as for rasterize."""
+    """(size, size) whether any triangle covers a pixel; arguments as for rasterize."""
     covered = np.zeros(size * size, dtype=bool)
     for pixel, _, _ in _candidates(corners, np.zeros(corners.shape[:2]), size):
         covered[pixel] = True
@@ -64,7 +67,10 @@ def coverage(corners: Float, size: int) -> Bool:
 
 
 def _candidates(corners: Float, depth: Float, size: int) -> Iterator[tuple[Int, Int, Float]]:
-    """Batches of (pixel, triangle, depth) for every pixel centre inside a triangle."""
+    """Batches of pixel (k,), triangle (k,), depth (k,) for every pixel centre inside a triangle.
+
+    corners : (m, 3, 2);  depth : (m, 3).
+    """
     low = np.clip(np.ceil(corners.min(axis=1) - 0.5), 0, size).astype(np.int64)
     high = np.clip(np.floor(corners.max(axis=1) - 0.5) + 1, 0, size).astype(np.int64)
     wide, tall = np.maximum(high - low, 0).T
@@ -72,9 +78,8 @@ def _candidates(corners: Float, depth: Float, size: int) -> Iterator[tuple[Int, 
     some = np.flatnonzero(count)
     batch = np.cumsum(count[some]) // _BATCH_PIXELS
     for chosen in np.split(some, np.flatnonzero(np.diff(batch)) + 1):
-        triangle = np.repeat(chosen, count[chosen])
-        start = np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
-        step = np.arange(len(triangle)) - start
+        run, step = runs(count[chosen])
+        triangle = chosen[run]
         column = low[triangle, 0] + step % wide[triangle]
         row = low[triangle, 1] + step // wide[triangle]
         weights, inside = _weights(corners[triangle], *_centres(column, row))
@@ -88,9 +93,10 @@ def _centres(column: Int, row: Int) -> tuple[Float, Float]:
 
 
 def _weights(corners: Float, x: Float, y: Float) -> tuple[Float, Bool]:
-    """Barycentric coordinates (k, 3) of points in their triangles (k, 3, 2), and which lie inside.
+    """(k, 3) barycentric coordinates of points in triangles, and (k,) whether they lie inside.
 
-    A point on an edge counts as inside; a triangle without area has no inside.
+    corners : (k, 3, 2);  x, y : (k,).  A point on an edge counts as inside; a triangle without area
+    has no inside.
     """
     (ax, ay), (bx, by), (cx, cy) = (corners[:, index].T for index in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)

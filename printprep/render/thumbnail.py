@@ -1,8 +1,8 @@
-"""A small picture of a part, as a slicer shows it beside the file: numpy and zlib, nothing else.
+"""Draws the small picture of a part that a slicer shows beside the file, with numpy and zlib only.
 
-Parallel projection from the front right and above; a key light from the upper left, a fill light,
-a sky that is brighter than the ground, and a soft shadow on the bed; transparent around it.
-No clock, no graphics card, no font: the same mesh gives the same picture.
+Parallel projection from the front right and above, with the light of shading.py and a soft shadow
+on the bed; the background is transparent.  It needs no graphics card and no font: the same mesh
+gives the same picture.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.render.raster import coverage, rasterize
-from printprep.render.shading import along, blur, corner_normals, lit, to_srgb, unit
+from printprep.render.shading import blur, camera, corner_normals, dot, normalized, shaded, to_srgb
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
 _OVERSAMPLING = 2
 _MARGIN = 0.06  # of the picture's side, on every side
-_AZIMUTH_DEG, _ELEVATION_DEG = -60.0, 22.0  # of the eye, from +x towards +y, above the bed
+_AZIMUTH_DEG, _ELEVATION_DEG = -60.0, 22.0  # of the eye, from +x toward +y, above the bed
 _COLOUR = np.array([0.95, 0.33, 0.06])  # linear light: printed orange
 _SHADOW = 0.38
 _SHADOW_BLUR = 0.025  # of the picture's side
@@ -42,14 +42,14 @@ def thumbnail_png(vertices: Float, faces: Int, size: int = 256) -> bytes:
 
 
 def _render(vertices: Float, faces: Int, size: int) -> Float:
-    """(size, size, 4) linear colour, premultiplied by alpha."""
+    """(size, size, 4) linear colour, premultiplied by alpha; vertices (n, 3) mm, faces (m, 3)."""
     image = np.zeros((size * size, 4))
     if not len(faces):
         return image.reshape(size, size, 4)
-    right, up, eye = _camera()
+    right, up, eye = camera(_AZIMUTH_DEG, _ELEVATION_DEG)
     ground = vertices * [1.0, 1.0, 0.0] + [0.0, 0.0, float(vertices[:, 2].min())]
-    flat = np.column_stack([along(vertices, right), -along(vertices, up)])
-    flat_ground = np.column_stack([along(ground, right), -along(ground, up)])
+    flat = np.column_stack([dot(vertices, right), -dot(vertices, up)])
+    flat_ground = np.column_stack([dot(ground, right), -dot(ground, up)])
     low = np.minimum(flat.min(axis=0), flat_ground.min(axis=0))
     high = np.maximum(flat.max(axis=0), flat_ground.max(axis=0))
     scale = size * (1.0 - 2.0 * _MARGIN) / max(float((high - low).max()), 1e-12)
@@ -61,30 +61,17 @@ def _render(vertices: Float, faces: Int, size: int) -> Float:
     image[:, 3] = shade.ravel()
 
     normals, smooth = corner_normals(vertices, faces)
-    seen = np.flatnonzero(along(normals, eye) > 0.0)
-    depth = along(vertices, eye)
+    seen = np.flatnonzero(dot(normals, eye) > 0.0)
+    depth = dot(vertices, eye)
     hits = rasterize(flat[faces[seen]], depth[faces[seen]], size)
     normal = (smooth[seen[hits.triangle]] * hits.weights[:, :, None]).sum(axis=1)
-    image[hits.pixel, :3] = lit(unit(normal), eye, _COLOUR)
+    image[hits.pixel, :3] = shaded(normalized(normal), eye, _COLOUR)
     image[hits.pixel, 3] = 1.0
     return image.reshape(size, size, 4)
 
 
-def _camera() -> tuple[Float, Float, Float]:
-    azimuth, elevation = np.radians(_AZIMUTH_DEG), np.radians(_ELEVATION_DEG)
-    eye = np.array(
-        [
-            np.cos(elevation) * np.cos(azimuth),
-            np.cos(elevation) * np.sin(azimuth),
-            np.sin(elevation),
-        ]
-    )
-    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
-    return right, np.cross(eye, right), eye
-
-
 def _png(picture: np.ndarray[tuple[int, ...], np.dtype[np.uint8]]) -> bytes:
-    """An RGBA picture (height, width, 4) as PNG (ISO/IEC 15948), rows coded as differences."""
+    """An RGBA picture (height, width, 4) as PNG (ISO/IEC 15948), with rows as differences."""
     height, width, _ = picture.shape
     rows = picture.reshape(height, width * 4)
     above = np.vstack([np.zeros((1, width * 4), dtype=np.uint8), rows[:-1]])

@@ -1,1 +1,1 @@
-"""The slicer on this machine, driven and read."""
+"""Runs the slicer that is installed on this machine, and reads its output."""

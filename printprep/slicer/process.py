@@ -1,9 +1,9 @@
-"""PrusaSlicer as a child process: found, asked about a file, and made to slice.
+"""Finds PrusaSlicer, asks it about a model, and slices with it, as a child process.
 
-Every call empties --post-process, and what is loaded is stripped of that key first: an .ini, a
+Every call empties --post-process, and every loaded file is stripped of that key first: an .ini, a
 G-code or a 3MF can carry commands, and some versions run them without asking.  Every call has a
 time limit, a closed standard input and a settings folder of its own, so that neither a question
-nor the user's own set-up can change what comes out.
+nor the user's settings change the result.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from printprep.errors import InputError, OutputError, ToolError
+from printprep.files import reason_of, replacing
 from printprep.slicer.child import INSTALL_HINT, SLICER_VARIABLE, last_lines, run_child
 from printprep.slicer.sanitize import settings_ini, without_commands
 
@@ -25,13 +26,14 @@ _ON_PATH = ("prusa-slicer", "prusa-slicer-console", "PrusaSlicer", "prusaslicer"
 _IN_APP = Path("Contents", "MacOS", "PrusaSlicer")
 _VERSION = re.compile(r"^(\w*Slicer)-(\d+)\.(\d+)\.(\d+)", re.MULTILINE)
 _ASK_SECONDS = 60.0
+_COPY_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
 class ModelInfo:
-    """What the slicer says of a model: its sum over the objects of the file.
+    """What the slicer reports about a model, summed over the objects of the file.
 
-    parts counts shells (an inverted cavity shell is one);  size_mm : (x, y, z) of the whole.
+    parts : number of shells (an inverted cavity shell is one);  size_mm : (x, y, z) of the whole.
     """
 
     manifold: bool
@@ -42,7 +44,7 @@ class ModelInfo:
 
 @dataclass(frozen=True)
 class Sliced:
-    """A finished G-code and what the slicer warned of."""
+    """A finished G-code and the slicer's warnings."""
 
     gcode: Path
     warnings: tuple[str, ...]
@@ -50,14 +52,14 @@ class Sliced:
 
 @dataclass(frozen=True)
 class Slicer:
-    """A PrusaSlicer that answered; version as (major, minor, patch)."""
+    """A PrusaSlicer that runs on this machine; version as (major, minor, patch)."""
 
     executable: Path
     name: str
     version: tuple[int, int, int]
 
     def info(self, file: Path, *, timeout_seconds: float = 120.0) -> ModelInfo:
-        """Ask about a model (STL, OBJ, 3MF).  Raises ToolError where it cannot be loaded."""
+        """Ask about a model (STL, OBJ, 3MF).  Raises ToolError where the slicer cannot load it."""
         with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
             safe = _model(file, Path(folder))
             done = run_child(self.executable, ["--info", str(safe)], Path(folder), timeout_seconds)
@@ -72,19 +74,19 @@ class Slicer:
         *,
         timeout_seconds: float = 1800.0,
     ) -> Sliced:
-        """Slice `file` where it lies, into `out_gcode`, which is replaced only when complete.
+        """Slice `file` without moving it on the bed, into `out_gcode`, replaced only when complete.
 
-        load : .ini or G-code with print settings;  settings : keys that go over them.  Settings
-        that an object of a 3MF carries go over both.
+        load : .ini or G-code with print settings;  settings : keys that override them.  The
+        settings of an object in a 3MF override both.
 
-        Raises ToolError where the slicer fails, takes too long, or ends well without a G-code;
+        Raises ToolError where the slicer fails, takes too long, or exits with 0 and no G-code;
         OutputError where `out_gcode` cannot be written.
         """
         with tempfile.TemporaryDirectory(prefix="printprep-") as name:
             folder = Path(name)
             made = folder / "sliced.gcode"
             arguments = ["--export-gcode", "--dont-arrange", "--output", str(made)]
-            if self.version >= (2, 4, 0):  # else a bad value is replaced, and nobody told
+            if self.version >= (2, 4, 0):  # else a bad value is replaced without a warning
                 arguments += ["--config-compatibility", "disable"]
             if load is not None:
                 arguments += ["--load", str(without_commands(load, folder))]
@@ -96,21 +98,22 @@ class Slicer:
             done = run_child(self.executable, arguments, folder, timeout_seconds)
             if not made.is_file() or made.stat().st_size == 0:
                 raise ToolError(
-                    f"{self.name} ended without an error, but sliced nothing of {file.name}",
-                    last_lines(done) or "slice it by hand once to see what it asks",
+                    f"{self.name} ended without an error, but wrote no G-code of {file.name}.",
+                    last_lines(done) or "Slice it by hand once, to see the slicer's questions.",
                 )
             try:
-                _replace(made, out_gcode)
+                with made.open("rb") as source, replacing(out_gcode) as out:
+                    shutil.copyfileobj(source, out, _COPY_BYTES)
             except OSError as error:
-                raise OutputError(f"{out_gcode}: cannot be written ({error})") from error
+                raise OutputError(f"{out_gcode} cannot be written: {reason_of(error)}.") from error
         return Sliced(out_gcode, _warnings(done.stdout + done.stderr))
 
 
 def find_slicer(path: Path | None = None) -> Slicer:
-    """The slicer at `path`, or the one on this machine.  Raises ToolError that says how to get one.
+    """The slicer at `path`, or the one installed.  Raises ToolError that says how to get one.
 
-    Looked for: the variable PRINTPREP_SLICER, the search path, then the usual places of macOS and
-    Windows.
+    Without `path` it is the one in the variable PRINTPREP_SLICER, on the search path, or in the
+    usual places of macOS and Windows, in this order.
     """
     if path is None and os.environ.get(SLICER_VARIABLE):
         path = Path(os.environ[SLICER_VARIABLE])
@@ -119,16 +122,16 @@ def find_slicer(path: Path | None = None) -> Slicer:
             path = path / _IN_APP
         found = shutil.which(str(path))
         if found is None:
-            raise ToolError(f"{path}: there is no such program", INSTALL_HINT)
-        return _answering(_console(Path(found)))
+            raise ToolError(f"There is no program {path}.", INSTALL_HINT)
+        return _identified(_console(Path(found)))
     for name in _ON_PATH:
         found = shutil.which(name)
         if found is not None:
-            return _answering(_console(Path(found)))
+            return _identified(_console(Path(found)))
     for place in _usual_places():
         if place.is_file():
-            return _answering(place)
-    raise ToolError("PrusaSlicer was not found", INSTALL_HINT)
+            return _identified(place)
+    raise ToolError("PrusaSlicer was not found.", INSTALL_HINT)
 
 
 def slicer_if_any(path: Path | None = None) -> Slicer | None:
@@ -158,17 +161,18 @@ def _usual_places() -> list[Path]:
 
 
 def _console(path: Path) -> Path:
-    """On Windows the program beside the one with windows, which has no output to read."""
+    """On Windows the console program beside the one with a window, which prints no output."""
     beside = path.with_name("prusa-slicer-console.exe")
     return beside if path.name.lower() == "prusa-slicer.exe" and beside.is_file() else path
 
 
-def _answering(path: Path) -> Slicer:
+def _identified(path: Path) -> Slicer:
+    """The slicer at a path, with the name and version that its help prints."""
     with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
         done = run_child(path, ["--help"], Path(folder), _ASK_SECONDS)
     match = _VERSION.search(done.stdout)
     if match is None:
-        raise ToolError(f"{path} does not answer as PrusaSlicer does", INSTALL_HINT)
+        raise ToolError(f"{path} is not PrusaSlicer: its --help names no version.", INSTALL_HINT)
     name, *numbers = match.groups()
     major, minor, patch = (int(number) for number in numbers)
     return Slicer(path, f"{name} {major}.{minor}.{patch}", (major, minor, patch))
@@ -176,9 +180,12 @@ def _answering(path: Path) -> Slicer:
 
 def _model(file: Path, folder: Path) -> Path:
     if not file.is_file():
-        raise InputError(f"{file}: there is no such file")
+        raise InputError(f"{file} does not exist.", "Check the name and the folder.")
     if file.suffix.lower() not in (".3mf", ".stl", ".obj"):
-        raise InputError(f"{file.name}: only 3MF, STL and OBJ are handed to a slicer")
+        raise InputError(
+            f"{file.name} is not a model for a slicer: its suffix is {file.suffix or 'missing'}.",
+            "Use 3MF, STL or OBJ.",
+        )
     return without_commands(file, folder)
 
 
@@ -197,20 +204,9 @@ def _parse_info(text: str, file: Path) -> ModelInfo:
             (x, y, z),
         )
     except (KeyError, ValueError) as error:
-        raise ToolError(f"the slicer says nothing of {file.name} that can be read") from error
+        raise ToolError(f"The slicer's report on {file.name} cannot be read.") from error
 
 
 def _warnings(text: str) -> tuple[str, ...]:
     lines = [line.strip() for line in text.splitlines()]
     return tuple(line for line in lines if re.search(r"\bwarning\b", line, re.IGNORECASE))
-
-
-def _replace(made: Path, out: Path) -> None:
-    handle, name = tempfile.mkstemp(prefix=f".{out.name}.", suffix=".part", dir=out.parent)
-    os.close(handle)
-    beside = Path(name)
-    try:
-        shutil.copyfile(made, beside)
-        beside.replace(out)
-    finally:
-        beside.unlink(missing_ok=True)

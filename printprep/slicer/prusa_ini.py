@@ -1,7 +1,7 @@
-"""A profile as PrusaSlicer's own .ini: the print settings that no 3MF can carry.
+"""Writes a profile as an .ini of PrusaSlicer: the print settings that no 3MF can carry.
 
-Only what the profile fixes is in it, with what follows from that; speeds, temperatures and start
-G-code are the printer's own, and stay what they are in the slicer.
+It holds only what the profile fixes and what follows from that; speeds, temperatures and start
+G-code belong to the printer, and stay as they are set in the slicer.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FILAMENT_DIAMETER_MM = 1.75
 
 
 def profile_settings(profile: Profile) -> dict[str, str]:
-    """The profile's print, filament and printer settings by PrusaSlicer's keys.
+    """The profile's print, filament and printer settings, by PrusaSlicer's keys.
 
     Raises UsageError for a profile that is not fdm.
     """
@@ -66,5 +66,5 @@ def profile_settings(profile: Profile) -> dict[str, str]:
 
 
 def profile_ini(profile: Profile) -> str:
-    """The profile as .ini text for PrusaSlicer's --load or Import Config; the same every time."""
+    """The profile as .ini text for PrusaSlicer's --load or Import Config."""
     return f"# printprep profile {profile.name}\n{settings_ini(profile_settings(profile))}"

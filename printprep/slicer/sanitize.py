@@ -1,7 +1,7 @@
-"""What a slicer is given to load, without the one key that makes it run commands.
+"""Strips the files that a slicer loads of post_process, the one key that makes it run commands.
 
-PrusaSlicer's post_process holds shell commands.  It lives in .ini files, in the comments at the end
-of a G-code, and in the print config inside a 3MF.
+PrusaSlicer's post_process holds shell commands.  It stands in .ini files, in the comments at the
+end of a G-code, and in the print config inside a 3MF.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ _CONFIG_BYTES_MAX = 64 << 20
 def settings_ini(settings: Mapping[str, str]) -> str:
     """Settings as the text of an .ini, keys sorted.
 
-    Raises UsageError for post_process, and for keys or values that would smuggle in other lines.
+    Raises UsageError for post_process, and for keys or values that would add further lines.
     """
     lines = []
     for key in sorted(settings):
         value = settings[key]
         if key == "post_process":
-            raise UsageError("post_process is not passed on to a slicer: it runs commands")
+            raise UsageError("post_process is not passed on to a slicer: it runs commands.")
         if not re.fullmatch(r"[a-z][a-z0-9_]*", key) or re.search(r"[\x00-\x1f\x7f]", value):
-            raise UsageError(f"{key!r} = {value!r} is not a setting of a slicer")
+            raise UsageError(f"{key!r} = {value!r} is not a setting of a slicer.")
         lines.append(f"{key} = {value}\n")
     return "".join(lines)
 
 
 def without_commands(file: Path, folder: Path) -> Path:
-    """`file` itself where it cannot carry commands, else a copy in `folder` that does not.
+    """`file` itself where it cannot carry commands, else a copy in `folder` without them.
 
-    The copy has the suffix a slicer goes by; a G-code still under its temporary name (.gcode.pp)
-    becomes a .gcode.  Raises InputError where the file cannot be read.
+    The copy has the suffix by which a slicer knows the format; a G-code under its temporary name
+    (.gcode.pp) becomes a .gcode.  Raises InputError where the file cannot be read.
     """
     suffix = file.suffix.lower()
     try:
@@ -53,7 +53,7 @@ def without_commands(file: Path, folder: Path) -> Path:
             sink.writelines(line for line in source if not _LINE.match(line))
         return target
     except (OSError, zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
-        raise InputError(f"{file.name}: cannot be read ({error})") from error
+        raise InputError(f"{file.name} cannot be read: {error}.") from error
 
 
 def _clean_3mf(file: Path, target: Path) -> Path:
@@ -62,7 +62,9 @@ def _clean_3mf(file: Path, target: Path) -> Path:
         for entry in source.infolist():
             if entry.filename.lower().endswith(_CONFIG_SUFFIXES):
                 if entry.file_size > _CONFIG_BYTES_MAX:
-                    raise InputError(f"{file.name}: {entry.filename} is too large to be a config")
+                    raise InputError(
+                        f"{file.name} holds {entry.filename}, which is too large for a config."
+                    )
                 content = source.read(entry)
                 if b"post_process" in content:
                     dirty[entry.filename] = content

@@ -1,1 +1,1 @@
-"""How a part stands: contact, support polygon, tilt angle."""
+"""Stability of a part: contact, support polygon, tilt angle, and a physics simulation."""

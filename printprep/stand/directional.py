@@ -1,4 +1,4 @@
-"""The tilt angle toward one direction, where ``stability`` gives the least over all directions."""
+"""The tilt angle toward one azimuth (``stability`` gives the least over all azimuths)."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from printprep.types import Stability
 
 
 def directional_tilt_deg(standing: Stability, azimuth_deg: float) -> float | None:
-    """The lean toward one azimuth at which the weight's line leaves the support polygon.
+    """The lean toward one azimuth at which the line of the weight leaves the support polygon.
 
-    Leaned by α toward the horizontal unit vector u, the weight's line through the centre of mass c
-    meets the bed at c_xy + c_z tan α · u.  It crosses edge k, with outward normal n_k and offset
-    d_k, at tan α = (d_k − n_k · c_xy) / (c_z n_k · u); the first of the edges ahead counts.
+    When the part leans by α toward the horizontal unit vector u, the vertical through its centre of
+    mass c meets the bed at c_xy + c_z tan α · u.  It crosses edge k, with outward normal n_k and
+    offset d_k, at tan α = (d_k − n_k · c_xy) / (c_z n_k · u); the first edge ahead counts.
 
     Parameters
     ----------
@@ -21,8 +21,8 @@ def directional_tilt_deg(standing: Stability, azimuth_deg: float) -> float | Non
 
     Returns
     -------
-    Degrees, never less than ``standing.tilt_deg``, which it equals toward the weakest edge; that
-    angle itself, negative, for a part that falls even upright; None without contact.
+    Degrees, at least ``standing.tilt_deg``, and equal to it toward the weakest edge; the negative
+    ``standing.tilt_deg`` for a part that falls even upright; None without contact.
     """
     if standing.tilt_deg is None or standing.tilt_deg < 0:
         return standing.tilt_deg
@@ -30,6 +30,6 @@ def directional_tilt_deg(standing: Stability, azimuth_deg: float) -> float | Non
     centre = np.array(standing.centre_of_mass_mm)
     azimuth = np.radians(azimuth_deg)
     toward = footing.normals @ np.array([np.cos(azimuth), np.sin(azimuth)])
-    room = footing.offsets_mm - footing.normals @ centre[:2]
+    inside = footing.offsets_mm - footing.normals @ centre[:2]
     ahead = toward > 0
-    return float(np.degrees(np.arctan(np.min(room[ahead] / toward[ahead]) / centre[2])))
+    return float(np.degrees(np.arctan(np.min(inside[ahead] / toward[ahead]) / centre[2])))

@@ -1,16 +1,14 @@
-"""The film of a part: let go, and when it stays, the bed tilted until it tips."""
+"""Films a simulated part: it is released on the bed, and the bed tilts until it falls."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from printprep.mesh.measure import bodies
 from printprep.stand.motion import STEP_S, Motion
 from printprep.stand.scene import MOST_LEAN_DEG, scene_of
-from printprep.stand.stability import stability
+from printprep.stand.stability import least_stable, stability
 from printprep.stand.tilt_test import TIPS_ABOVE_DEG
 
 if TYPE_CHECKING:
@@ -18,18 +16,19 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-# The bed takes so long to come close to the tilt angle, and goes on from there more slowly.
+# Seconds of rest, of tilting up to the share _CLOSE of the tilt angle, and of falling; beyond that
+# share the bed tilts more slowly, by the factor _SLOWER.
 _REST_S, _TILTING_S, _FALLING_S = 0.4, 2.4, 1.6
 _CLOSE, _SLOWER = 0.9, 0.3
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One moment.
+    """One moment of a film.
 
-    lean_deg : of the bed;  rotation (3, 3) and shift_mm (3,) take a point of the part, in mm as it
-    stood on the level bed, to where it is over the bed: rotation · point + shift.
-    tilt_deg : how far it has turned over, relative to the bed.
+    lean_deg : of the bed;  rotation : (3, 3) and shift_mm : (3,) take a point of the part, in mm as
+    it stood on the level bed, to its place over the bed now: rotation · point + shift.
+    tilt_deg : how far the part has turned over, relative to the bed.
     """
 
     lean_deg: float
@@ -40,10 +39,9 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """What happened to the weakest body.
+    """The fall of the weakest body, frame by frame.
 
-    body : as it stood, in mm;  azimuth_deg : toward which the bed leans;
-    frames : so many of them a second.
+    body : as it stood at first, in mm;  azimuth_deg : toward which the bed leans.
     """
 
     body: Manifold
@@ -53,14 +51,14 @@ class Film:
 
 
 def film(part: Manifold, first_layer_mm: float, frames_per_s: float) -> Film:
-    """Film the weakest body: a moment of rest, the bed leaning ever more, and its fall.
+    """Film the weakest body: a moment of rest, the bed leaning more and more, and the fall.
 
-    The bed leans toward the weakest edge (+x without contact), and stops when its foot comes off.
+    The bed leans toward the weakest edge (+x without contact), and stops when the foot leaves it.
     """
-    each = [(body, stability(body, first_layer_mm)) for body in bodies(part)]
-    body, standing = min(
-        each, key=lambda pair: -np.inf if pair[1].tilt_deg is None else pair[1].tilt_deg
-    )
+    each = bodies(part)
+    standings = [stability(body, first_layer_mm) for body in each]
+    standing = least_stable(standings)
+    body = each[standings.index(standing)]
     azimuth = standing.weakest_azimuth_deg or 0.0
     tilt_deg = max(standing.tilt_deg or 0.0, 1.0)
     quick = _CLOSE * tilt_deg / (_TILTING_S * frames_per_s)
@@ -80,7 +78,7 @@ def film(part: Manifold, first_layer_mm: float, frames_per_s: float) -> Film:
 
 
 def _frame(motion: Motion, lean_deg: float, centre_mm: Float) -> Frame:
-    """Where a body is now; ``centre_mm`` (3,) is its centre of mass as it stood."""
+    """The present frame; ``centre_mm`` (3,) is the centre of mass at first."""
     rotation = motion.rotation
     shift = motion.position_mm - rotation @ centre_mm
     return Frame(lean_deg, rotation, shift, motion.tilt_deg)

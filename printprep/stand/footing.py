@@ -11,18 +11,19 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
-# Toward the sides a directed lean does not go, a body must still stand upright; a thousandth of the
-# lean there keeps every row of the program of one kind.
+# A lean toward one azimuth asks little of the edges on the other sides: the body only has to stand
+# upright there.  A thousandth of the lean at these edges keeps all rows of the program alike.
 ASIDE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Footing:
-    """What a balance must know of the ground: (k, 2) outward unit normals and (k,) offsets, mm.
+    """The edges of a support polygon.
 
-    An edge's line is {x : normal · x = offset}; the body's foot lies on the inner side.
-    share : (k,) of the lean's tangent that falls on each edge, 1 for a lean in every direction,
-    normal · direction for a lean in one.
+    normals : (k, 2) outward unit normals;  offsets_mm : (k,).  The line of an edge is
+    {x : normal · x = offset}; the foot of the body lies on the inner side.
+    share : (k,) share of the lean's tangent that counts at each edge: 1 for a lean in every
+    direction, normal · direction for a lean in one.
     """
 
     normals: Float
@@ -38,7 +39,7 @@ class Footing:
         return Footing(normals, np.einsum("ij,ij->i", normals, polygon_mm))
 
     def toward(self, azimuth_deg: float | None) -> Footing:
-        """The same edges for a lean toward one azimuth, from +x counter-clockwise; None: all."""
+        """The same edges for a lean toward an azimuth (from +x counter-clockwise; None: all)."""
         if azimuth_deg is None:
             return replace(self, share=None)
         azimuth = np.radians(azimuth_deg)
@@ -46,12 +47,15 @@ class Footing:
         return replace(self, share=np.maximum(along, ASIDE))
 
     def constraints(self, lean_deg: float) -> Float:
-        """(k, 4) rows H with H s ≥ 0 exactly when s stands at the lean."""
+        """(k, 4) H with H s ≥ 0 exactly where a body with moments s stands at the lean.
+
+        s : (4,) volume in mm³ and first moments x, y, z in mm⁴.
+        """
         share = np.ones(len(self.offsets_mm)) if self.share is None else self.share
         tangent = share * np.tan(np.radians(lean_deg))
         return np.hstack([self.offsets_mm[:, None], -self.normals, -tangent[:, None]])
 
     def tangent(self, moments: Float) -> float:
-        """Tangent of the tilt angle of a body with moments (4,): of the lean at which it tips."""
+        """Tangent of the tilt angle of a body with moments (4,), as in ``constraints``."""
         share = 1.0 if self.share is None else self.share
         return float(np.min(self.constraints(0.0) @ moments / share) / moments[3])

@@ -1,4 +1,4 @@
-"""A lean as a user names it: 10, or 15@90 for a lean of 15° toward the azimuth of 90°."""
+"""Reads a lean as the user writes it: 10, or 15@90 for 15° toward the azimuth of 90°."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _FORM = "Give degrees, as 10, or degrees@azimuth, as 15@90 (azimuth from +x, cou
 
 
 def lean_of(asked: float | str | Lean | None, default_deg: float) -> Lean:
-    """The lean that was asked for, the default where none was.
+    """The lean that the user asks for, the default where there is none.
 
-    Raises UsageError for what is no number, and for angles outside 0° to 60°.
+    Raises UsageError for text that is not a lean, and for angles outside 0° to 60°.
     """
     if isinstance(asked, Lean):
         lean = asked
@@ -27,7 +27,7 @@ def lean_of(asked: float | str | Lean | None, default_deg: float) -> Lean:
         try:
             lean = Lean(float(angle), float(azimuth) % 360.0 if at else None)
         except ValueError:
-            raise UsageError(f"A lean of {asked!r} is not understood.", _FORM) from None
+            raise UsageError(f"{asked!r} is not a lean.", _FORM) from None
     if not 0 <= lean.angle_deg <= MOST_DEG:
         raise UsageError(f"A lean of {lean.angle_deg:g}° is not between 0° and {MOST_DEG:g}°.")
     if lean.azimuth_deg is not None and not 0 <= lean.azimuth_deg < 360:
@@ -36,7 +36,7 @@ def lean_of(asked: float | str | Lean | None, default_deg: float) -> Lean:
 
 
 def tilt_toward(standing: Stability, lean: Lean) -> float | None:
-    """The tilt angle that the lean is compared with: least of all, or toward its azimuth."""
+    """The tilt angle to compare with the lean: the least one, or the one toward its azimuth."""
     if lean.azimuth_deg is None:
         return standing.tilt_deg
     return directional_tilt_deg(standing, lean.azimuth_deg)

@@ -1,4 +1,4 @@
-"""The poses in which a solid stands by itself: the facets of its hull under its centre of mass."""
+"""Finds the poses in which a solid stands by itself, on facets of its hull, and turns it there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays, from_arrays, mass_properties
+from printprep.mesh.measure import area_normals, arrays, from_arrays, mass_properties
 from printprep.stand.footing import Footing
 
 if TYPE_CHECKING:
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 
-# Hull triangles whose normals differ by less than this bear together, and poses whose downs differ
-# by less are one: a hundredth of the lean anyone asks for.
+# Hull triangles whose normals differ by less than this carry the solid together, and poses whose
+# down directions differ by less are one pose: a hundredth of a usual lean.
 SAME_DEG = 0.1
 MOST_POSES = 12
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """A way to lie on the bed.
+    """A stable pose on the bed.
 
-    rotation : (3, 3) proper, turns the solid so that the pose's facet faces down.
-    tilt_deg : the lean at which the solid tips out of it, toward its weakest side.
+    rotation : (3, 3) proper, turns the solid so that the facet of the pose faces down.
+    tilt_deg : the lean at which the solid tips out of the pose, over its weakest edge.
     """
 
     rotation: Float
@@ -35,15 +35,14 @@ class Pose:
 
 
 def stable_poses(solid: Manifold) -> tuple[Pose, ...]:
-    """The poses a solid stands in, the steadiest first, twelve at most.
+    """The poses in which a solid stands, the most stable first, twelve at most.
 
     A pose is a facet of the convex hull with the centre of mass above its inside; its tilt angle
-    is atan(distance to the facet's nearest edge over height), as for any support polygon.
+    is atan(distance to the nearest edge of the facet / height), as for any support polygon.
     """
     vertices, faces = arrays(solid.hull())
     centre = np.array(mass_properties(solid).centre_mm)
-    corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(vertices[faces])
     area = np.linalg.norm(normals, axis=1)
     normals = normals[area > 0] / area[area > 0, None]
     poses: list[tuple[Float, Pose]] = []
@@ -58,7 +57,7 @@ def stable_poses(solid: Manifold) -> tuple[Pose, ...]:
 
 
 def in_pose(manifold: Manifold, pose: Pose) -> tuple[Manifold, Float]:
-    """A solid turned into a pose, on the bed and centred on x = y = 0, and the (4, 4) move."""
+    """A solid in a pose, on the bed and centred on x = y = 0, and the (4, 4) move to it."""
     vertices, faces = arrays(manifold)
     move = np.eye(4)
     move[:3, :3] = pose.rotation
@@ -70,7 +69,10 @@ def in_pose(manifold: Manifold, pose: Pose) -> tuple[Manifold, Float]:
 
 
 def _pose(down: Float, vertices: Float, centre: Float) -> Pose | None:
-    """The pose with this face normal pointing down, None when the solid falls out of it."""
+    """The pose with a normal of the hull pointing down, None where the solid falls out of it.
+
+    down : (3,) unit vector;  vertices : (n, 3) mm, of the hull;  centre : (3,) mm, centre of mass.
+    """
     rotation = _turn_down(down)
     height = vertices @ down
     reach = float(np.ptp(vertices, axis=0).max())
@@ -88,7 +90,7 @@ def _pose(down: Float, vertices: Float, centre: Float) -> Pose | None:
 
 
 def _turn_down(down: Float) -> Float:
-    """(3, 3) the shortest turn that takes a unit vector to −z (Rodrigues)."""
+    """(3, 3) the shortest rotation that takes a unit vector (3,) to −z (Rodrigues)."""
     target = np.array([0.0, 0.0, -1.0])
     axis = np.cross(down, target)
     cosine = float(down @ target)
@@ -100,7 +102,7 @@ def _turn_down(down: Float) -> Float:
 
 
 def _footing(points: Float) -> Footing | None:
-    """Edges of the convex hull of points (n, 2), None when they lie on a line."""
+    """Edges of the convex hull of points (k, 2) mm, None where they lie on a line."""
     from manifold3d import CrossSection
 
     hull = CrossSection.hull_points(points)

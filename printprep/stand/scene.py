@@ -1,19 +1,20 @@
-"""One body on a bed, for MuJoCo: what touches, what weighs, and in which units.
+"""Describes one body on a bed for MuJoCo: its contact points, its mass, and the units.
 
 Shape.  A convex body meets a plane at its vertices, so each vertex of the collision hull is a
-contact point of its own.  (MuJoCo's contact of a mesh with a plane keeps three or four points, by
-release: an outline of many corners would stand on a few of them and tip too early.)  The hull is
-that of the outside above the first layer's middle, with the section there carried down to the bed:
-what is printed is flat, and the rounded foot of the mesh would roll.
+contact point of its own.  (MuJoCo's contact of a mesh with a plane keeps three or four points,
+depending on the release: an outline of many corners would stand on a few of them and tip too
+early.)  The hull is that of the outside above the middle of the first layer, with the section there
+extended down to the bed: the print is flat at the bottom, while a rounded foot of the mesh would
+roll.
 
-Mass.  Centre and inertia are those of the hollow body, not of the hull.  How dense it is changes
-nothing: gravity, friction and inertia forces all grow with the mass alike.
+Mass.  Centre and inertia are those of the hollow body, not of the hull.  Its density changes
+nothing: gravity, friction and inertia forces all grow with the mass.
 
 Units.  Length is the body's radius of gyration, mass its own mass, time the second.  So the mass
 matrix is close to the identity for a chess pawn and a garden gnome, and the solver's tolerances
 mean the same for both.  With acceleration-based contacts of impedance d and time constant t the
-bed gives way by about (1 − d) g t², here 0.016 µm, so that the angle at which a foot a millimetre
-wide tips is not blurred; friction creeps by nanometres a second.
+bed gives way by about (1 − d) g t², here 0.016 µm: little against a foot of a millimetre, whose
+tilt angle stays exact; friction creeps by nanometres a second.
 
 Source: MuJoCo documentation, "Computation" (solver parameters, impedance).
 """
@@ -34,16 +35,16 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
 
 GRAVITY_MM_S2 = 9810.0
-# The bed tilts no further than this, and friction holds well beyond it.
+# The bed tilts up to this angle; friction holds well beyond it.
 MOST_LEAN_DEG = 80.0
 FRICTION = 1.5 * float(np.tan(np.radians(MOST_LEAN_DEG)))
 
 _IMPEDANCE = 0.9999
 _TIME_CONSTANT_STEPS = 4  # MuJoCo wants at least two
-# Of the body's size: what the foot's outline may lose to have fewer corners.
+# How far the outline of the foot may move when corners are removed, as a share of the body's size.
 _FOOT_TOLERANCE = 5e-4
-# Angles from straight down, in degrees, at which the hull is asked for its outermost vertex, and
-# how often around: densest where a body that starts to tip comes down next.
+# The hull keeps its outermost vertex in these directions: angles from straight down in degrees,
+# and a number of azimuths; densest where a body that starts to tip touches the bed next.
 _RINGS_DEG = (0.5, 1, 2, 3, 4.5, 6, 8, 10, 12.5, 15, 18, 21, 25, 30, 40, 50, 65, 80, 100, 130, 160)
 _AROUND = 36
 _POINT_RADIUS = 1e-6  # of the radius of gyration
@@ -51,11 +52,11 @@ _POINT_RADIUS = 1e-6  # of the radius of gyration
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A body, ready to be let go.
+    """A body, ready for the simulation.
 
-    points : (n, 3) contact points about the centre of mass;  height : of that centre above the
-    bed;  inertia : (3, 3) about it, mass 1;  all in units of ``unit_mm``, the radius of gyration.
-    centre_mm : (3,) the centre of mass, in the part's own place.
+    points : (n, 3) contact points relative to the centre of mass;  height : of that centre above
+    the bed;  inertia : (3, 3) about it, for mass 1;  all in units of ``unit_mm``, the radius of
+    gyration.  centre_mm : (3,) centre of mass, in the coordinates of the part.
     """
 
     points: Float
@@ -71,9 +72,9 @@ class Scene:
 
 
 def scene_of(body: Manifold, first_layer_mm: float) -> Scene:
-    """A single body (its voids inside it) as it stands on the bed.
+    """A single body, with its voids, as it stands on the bed.
 
-    One without contact is set down on its lowest point.
+    A body without contact is put on its lowest point.
     """
     mass = mass_properties(body)
     inertia = np.array(mass.inertia_mm5) / mass.volume_mm3
@@ -91,13 +92,14 @@ def scene_of(body: Manifold, first_layer_mm: float) -> Scene:
 
 
 def compiled(scene: Scene, step_s: float) -> Any:
-    """The scene as a MuJoCo model (``mujoco.MjModel``) with one free body over the plane z = 0."""
+    """The scene as a MuJoCo model (``mujoco.MjModel``): one free body over the plane z = 0."""
     import mujoco
 
     return mujoco.MjModel.from_xml_string(_mjcf(scene, step_s))
 
 
 def _hull_points(body: Manifold, first_layer_mm: float) -> Float:
+    """(k, 3) mm, corners of the foot on the bed and outermost vertices of the hull above it."""
     from manifold3d import CrossSection, Manifold
 
     vertices, _ = arrays(body)
@@ -118,7 +120,7 @@ def _hull_points(body: Manifold, first_layer_mm: float) -> Float:
 
 
 def _directions() -> Float:
-    """(k, 3) unit vectors in rings about straight down."""
+    """(k, 3) unit vectors in rings around straight down."""
     down, around = np.meshgrid(
         np.radians(_RINGS_DEG), np.arange(_AROUND) * (2 * np.pi / _AROUND), indexing="ij"
     )
@@ -127,7 +129,7 @@ def _directions() -> Float:
 
 
 def _mjcf(scene: Scene, step_s: float) -> str:
-    """MJCF, the numbers at full length so that the model is the same on every run."""
+    """The scene in MJCF, with all digits of its numbers, so that every run has the same model."""
     from xml.etree import ElementTree as ET
 
     root = ET.Element("mujoco")

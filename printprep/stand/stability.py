@@ -1,4 +1,4 @@
-"""The tilt angle: how far a part can lean before it tips."""
+"""Computes the tilt angle: how far a part can lean before it tips."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ if TYPE_CHECKING:
 
 
 def stability(manifold: Manifold, first_layer_mm: float) -> Stability:
-    """How a part stands: its weakest body, when it has several that do not touch.
+    """The stability of a part; of several bodies that do not touch, the weakest one counts.
 
     The tilt angle over edge k is atan((d_k − n_k · c_xy) / c_z), with the edge's outward normal
     n_k and offset d_k, the centre of mass c, and the pivot at z = 0; the least of them counts.
 
     Parameters
     ----------
-    manifold : the part, sitting on the bed, hollow as it is.
+    manifold : the part, on the bed, with its cavities.
     first_layer_mm : height of the first layer; contact is the section at half of it.
     """
-    return least(_one_body(body, first_layer_mm) for body in bodies(manifold))
+    return least_stable(_one_body(body, first_layer_mm) for body in bodies(manifold))
 
 
 def balanced(contact: Contact | None, centre_mm: tuple[float, float, float]) -> Stability:
-    """How a body stands on a contact (None: it has none) with its centre of mass there."""
+    """The stability of a body with this contact (None: no contact) and centre of mass."""
     if contact is None:
         return Stability(np.zeros((0, 2)), 0.0, centre_mm, None, None, None)
     footing = contact.footing
@@ -47,8 +47,8 @@ def balanced(contact: Contact | None, centre_mm: tuple[float, float, float]) -> 
     )
 
 
-def least(each: Iterable[Stability]) -> Stability:
-    """The one that tips first."""
+def least_stable(each: Iterable[Stability]) -> Stability:
+    """The one that tips first; one without contact before all others."""
     return min(each, key=lambda found: -np.inf if found.tilt_deg is None else found.tilt_deg)
 
 

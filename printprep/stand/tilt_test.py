@@ -1,4 +1,4 @@
-"""Tilt the bed slowly until the part tips, toward one azimuth after the other."""
+"""Simulates a bed that tilts slowly until the part tips, toward one azimuth after the other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from printprep.stand.directional import directional_tilt_deg
 from printprep.stand.motion import Motion
 from printprep.stand.scene import MOST_LEAN_DEG, Scene, scene_of
 from printprep.stand.simulate import STANDS_BELOW_DEG
-from printprep.stand.stability import stability
+from printprep.stand.stability import least_stable, stability
 from printprep.types import Tipping
 
 if TYPE_CHECKING:
@@ -20,13 +20,14 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 AZIMUTHS = 8
-# A foot that has come off the bed by so much does not come back; the bed gives way by far less.
+# A body that has turned by this much against the bed does not come back; the bed gives way by far
+# less.
 TIPS_ABOVE_DEG = 1.0
 
-# A body past its tipping point falls as exp(t √(g/l)), so the bed tilts on for a few of these times
-# before it shows.  Rates are degrees in the time √(l/g), l the radius of gyration, that all sizes
-# be late by the same: a quick sweep brackets the angle, and a slow one from shortly before finds it
-# to about 0.2°.
+# A body past its tipping point falls as exp(t √(g/l)), l the radius of gyration, so the bed tilts
+# on for a few times √(l/g) before the fall shows.  The rates are degrees in the time √(l/g), so
+# that the delay is the same angle for all sizes: a quick sweep brackets the tilt angle, and a slow
+# one that starts shortly before finds it to about 0.2°.
 _QUICK_DEG, _SLOW_DEG = 0.2, 0.025
 _BACK_DEG = 2.0
 _CONTROL_STEPS = 10
@@ -41,15 +42,15 @@ def tilt_test(
     azimuths: int = AZIMUTHS,
     toward_deg: float | None = None,
 ) -> tuple[Tipping, ...]:
-    """The leans at which a part tips, simulated beside computed.
+    """The leans at which a part tips, simulated and computed, toward several azimuths.
 
-    Toward ``azimuths`` directions evenly around from +x, the weakest edge's, and ``toward_deg``
-    when it is given.  Of several bodies the first to tip counts.  Empty when a body has no contact
-    with the bed.
+    These are ``azimuths`` even steps from +x, the weakest edge's azimuth, and ``toward_deg`` where
+    it is given.  Of several bodies the first to tip counts.  Empty where a body has no contact with
+    the bed.
     """
     each = bodies(part)
     standing = [stability(body, first_layer_mm) for body in each]
-    weakest = min(standing, key=lambda one: -np.inf if one.tilt_deg is None else one.tilt_deg)
+    weakest = least_stable(standing)
     if weakest.weakest_azimuth_deg is None:
         return ()
     scenes = [scene_of(body, first_layer_mm) for body in each]
@@ -64,9 +65,9 @@ def tilt_test(
 
 
 def tip(scene: Scene, azimuth_deg: float) -> tuple[float | None, float | None]:
-    """The leans toward an azimuth at which one body's foot leaves the bed, and it goes over.
+    """The leans toward an azimuth at which a body's foot leaves the bed, and at which it falls.
 
-    0 when that happens on the level bed, None when not up to MOST_LEAN_DEG.
+    0 where that happens on the level bed, None where it does not happen up to MOST_LEAN_DEG.
     """
     motion = Motion(scene)
     motion.advance(round(_SETTLE_S / _CONTROL_S) * _CONTROL_STEPS)
@@ -81,13 +82,13 @@ def tip(scene: Scene, azimuth_deg: float) -> tuple[float | None, float | None]:
     tips = slow.until(TIPS_ABOVE_DEG)
     if falls is None:
         return tips, None
-    if falls - slow.lean_deg > _BACK_DEG:  # something else holds it for a while
+    if falls - slow.lean_deg > _BACK_DEG:  # another part of it came down and holds it for a while
         slow = quick.again_before(falls, slowly)
     return tips, slow.until(STANDS_BELOW_DEG)
 
 
 class _Sweep:
-    """A bed that tilts evenly, from a lean on, toward one azimuth."""
+    """A bed that tilts at an even rate toward one azimuth, starting at a lean."""
 
     def __init__(self, motion: Motion, azimuth_deg: float, rate_deg_s: float, lean: float) -> None:
         self._motion = motion
@@ -98,11 +99,11 @@ class _Sweep:
 
     @property
     def lean_deg(self) -> float:
-        """The lean it has come to."""
+        """The present lean."""
         return self._from_deg + (len(self._states) - 1) * self._per_control
 
     def until(self, tilt_deg: float) -> float | None:
-        """Go on until the body has turned over so far; the lean then, None if it does not."""
+        """Tilt on until the body has turned by an angle; the lean then, None if it never does."""
         while self._motion.tilt_deg < tilt_deg:
             if self.lean_deg >= MOST_LEAN_DEG:
                 return None
@@ -112,7 +113,7 @@ class _Sweep:
         return self.lean_deg
 
     def again_before(self, lean_deg: float, rate_deg_s: float) -> _Sweep:
-        """The same at another rate, from its state shortly before a lean."""
+        """The same sweep at another rate, from its state shortly before a lean."""
         back = round((max(lean_deg - _BACK_DEG, 0.0) - self._from_deg) / self._per_control)
         self._motion.resume(self._states[back])
         start = self._from_deg + back * self._per_control
@@ -120,7 +121,7 @@ class _Sweep:
 
 
 def _around(azimuths: int, named: Sequence[float]) -> list[float]:
-    """Evenly spaced azimuths and those named, in place of any that is all but the same."""
+    """Evenly spaced azimuths and those named, which replace any within a degree of them."""
     even = [360.0 * index / azimuths for index in range(azimuths)]
     others = [one for one in even if all(1.0 < (one - name) % 360.0 < 359.0 for name in named)]
     return sorted({*others, *named})

@@ -1,4 +1,4 @@
-"""Everything the physics engine is asked about a part."""
+"""Runs both simulations of a part: the release on the level bed, and the tilting bed."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def trial(part: Manifold, first_layer_mm: float, lean: Lean) -> Simulation:
-    """Let a part go on the level bed, and tilt the bed until it tips; some seconds of work.
+    """Release a part on the level bed, and tilt the bed until it tips; this takes some seconds.
 
-    The bed tilts toward eight azimuths, the weakest edge's, and the lean's where it names one.
+    The bed tilts toward eight azimuths, the weakest edge's, and the lean's where it has one.
     """
     return Simulation(
         simulate(part, first_layer_mm),

@@ -1,4 +1,4 @@
-"""From a room for cavities to one whose every ceiling is carried from inside."""
+"""Vault a hollowable volume: carry every ceiling of it from inside."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from printprep.mesh.measure import bodies, together
 from printprep.mesh.short_edges import contract_short_edges
 from printprep.overhang.rule import Unsupported, unsupported_ceilings
 from printprep.supports.capitals import Capitals, cover
+from printprep.supports.carry_flagged import PHASES, carry_flagged
 from printprep.supports.ceiling import SPACING_MM, ceiling_samples
+from printprep.supports.column_feet import set_feet
+from printprep.supports.column_forest import Forest
 from printprep.supports.columns import raise_columns
-from printprep.supports.dexels import DEXEL_MM, Dexels
 from printprep.supports.distance_to_footing import DistanceToFooting
-from printprep.supports.feet import set_feet
-from printprep.supports.forest import Forest
-from printprep.supports.members import Members, built_for, slope_deg
-from printprep.supports.mend import PHASES, mended
+from printprep.supports.inside_lookup import LOOKUP_MM, InsideLookup
+from printprep.supports.member_sizes import MemberSizes, built_for, slope_deg
 from printprep.supports.solids import Frustum, columns, funnels, united
 
 if TYPE_CHECKING:
@@ -29,21 +29,21 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.profiles import Profile
 
-# Faces may move so much when the cavity is simplified: a fiftieth of the slicer's off.
+# Simplifying the cavity may move faces by so much: a fiftieth of the slicer's off.
 SIMPLIFY_MM = 0.003
-# Edges shorter than this are contracted once it is finished.
+# Shorter edges of the finished cavity are contracted.
 SHORT_MM = 0.002
 
 
 @dataclass(frozen=True, eq=False)
 class Vaults:
-    """What it takes to print a room without support.
+    """The vaults of a hollowable volume, and the cavity they leave.
 
-    cavity : the room without the vaults.
+    cavity : the hollowable volume without the vaults.
     samples, capitals, columns : how many;  added_mm3 : volume of the vaults.
     thinnest_mm : least thickness of any of them, across its axis.
-    unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases, before
-        short edges are contracted, which moves corners by less than the reserve.
+    unsupported_mm2, islands : what the rule, with the reserve, still flags, over all phases.  Short
+        edges are contracted after that, which moves corners by less than the reserve.
     """
 
     cavity: Manifold
@@ -57,27 +57,27 @@ class Vaults:
 
 
 def vaulted(hollowable_volume: Manifold, profile: Profile) -> Vaults:
-    """Carry every ceiling of a room by solids inside it.
+    """Carry every ceiling of a hollowable volume with solids inside it.
 
     Parameters
     ----------
-    hollowable_volume : what may be cavity, in printing position; thick walls around it.
+    hollowable_volume : all that may be cavity, in printing position, with thick walls around it.
     profile : an fdm profile: layers, lines, least feature.
 
     Raises UsageError for a profile without a nozzle.
     """
-    members, rule = Members.of(profile), built_for(profile)
+    members, rule = MemberSizes.of(profile), built_for(profile)
     samples = ceiling_samples(hollowable_volume, slope_deg(profile))
     capitals, forest = _raised(samples, hollowable_volume, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
     cavity = _without(hollowable_volume, wide + narrow).simplify(SIMPLIFY_MM)
-    cavity = roomy(cavity, members.thickness_mm)
+    cavity = without_small_pieces(cavity, members.thickness_mm)
     flagged = unsupported_ceilings(cavity, rule, PHASES).patches
-    under, props, flagged = mended(cavity, flagged, rule, members, capitals, forest)
+    under, props, flagged = carry_flagged(cavity, flagged, rule, members, capitals, forest)
     wide, narrow = wide + under, narrow + props
     if wide:
         cavity = contract_short_edges(_without(cavity, under + props), SHORT_MM)
-        cavity = roomy(cavity, members.thickness_mm)
+        cavity = without_small_pieces(cavity, members.thickness_mm)
     left = Unsupported(flagged)
     return Vaults(
         cavity=cavity,
@@ -92,30 +92,30 @@ def vaulted(hollowable_volume: Manifold, profile: Profile) -> Vaults:
 
 
 def _raised(
-    samples: Float, hollowable_volume: Manifold, members: Members
+    samples: Float, hollowable_volume: Manifold, members: MemberSizes
 ) -> tuple[Capitals, Forest]:
-    """Capitals for all samples (n, 3), and the columns under them."""
+    """Capitals for all samples (n, 3) mm, and the columns under them."""
     forest = Forest()
     if len(samples) == 0:
         return Capitals.none(), forest
-    dexels = Dexels.of(hollowable_volume, DEXEL_MM)
-    capitals = cover(samples, members, SPACING_MM**2, dexels)
-    landings = DistanceToFooting.of(dexels, members, float(capitals.node_mm[:, 2].max()))
-    raise_columns(capitals.node_mm, dexels, landings, members, forest)
-    set_feet(forest, dexels, members)
+    lookup = InsideLookup.of(hollowable_volume, LOOKUP_MM)
+    capitals = cover(samples, members, SPACING_MM**2, lookup)
+    footings = DistanceToFooting.of(lookup, members, float(capitals.node_mm[:, 2].max()))
+    raise_columns(capitals.node_mm, lookup, footings, members, forest)
+    set_feet(forest, lookup, members)
     return capitals, forest
 
 
 def _without(hollowable_volume: Manifold, pieces: Sequence[Frustum]) -> Manifold:
-    """The room less what is built in it."""
+    """The hollowable volume minus the pieces built in it."""
     if not pieces:
         return hollowable_volume
-    # As one surface of its own: the kernel leaves edges between those of several.
+    # As one original surface: the kernel keeps edges between surfaces of different origin.
     return (hollowable_volume - united(pieces)).as_original()
 
 
-def roomy(cavity: Manifold, thickness_mm: float) -> Manifold:
-    """The cavity without pieces smaller than a ball of the least feature: those print solid."""
+def without_small_pieces(cavity: Manifold, thickness_mm: float) -> Manifold:
+    """Drop the pieces of a cavity smaller than a ball of the least feature: they print solid."""
     from manifold3d import Manifold
 
     least = np.pi / 6 * thickness_mm**3

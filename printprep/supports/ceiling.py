@@ -1,4 +1,4 @@
-"""The ceilings of a room that are too flat to print, as points on a lattice."""
+"""Sample the ceilings that are too flat to print, as points on a lattice."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
 # Each sample stands for a square of this side, seen from below.
 SPACING_MM = 0.3
-# The lattice starts off any round number, where meshes have their edges.
+# The lattice avoids round numbers, where meshes have their edges.
 _JITTER = (0.4142135624, 0.7320508076)
 
 
 def ceiling_samples(
     hollowable_volume: Manifold, theta_deg: float, spacing_mm: float = SPACING_MM
 ) -> Float:
-    """(n, 3) points on faces that overhang more than θ from the vertical, by column, upward.
+    """(n, 3) mm, points on faces that overhang more than θ from the vertical, by column, upward.
 
-    A face of a cavity with outward normal n leans over by asin n_z.
+    A face of a cavity with outward normal n overhangs by asin n_z.
     """
     vertices, faces = arrays(hollowable_volume)
     if len(faces) == 0:
@@ -41,5 +41,5 @@ def ceiling_samples(
     high = vertices[flat].max(axis=(0, 1))[:2]
     axes = [np.arange(low[k], high[k] + spacing_mm, spacing_mm) for k in range(2)]
     columns = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    hits = cross(vertices, flat, columns)
+    hits = crossings_of(vertices, flat, columns)
     return np.column_stack([columns[hits.column], hits.z_mm])

@@ -1,9 +1,8 @@
 """Columns: trees that lean at most θ, join one another, and stand on the shell.
 
-The highest tip that hangs free comes next, and takes the cheapest way down: to the shell; to the
-place where its cone and another free tip's first meet; or to a column that is there already.  What
-is below a meeting counts by the way to the shell that is left from there (landings.py), as thick as
-it will have to be for what it carries.
+The highest free tip comes next and takes the cheapest way down: to the shell; to the place where
+its cone first meets another free tip's; or to a column already there.  Below a meeting, the rest of
+the way to the shell counts (distance_to_footing.py), as thick as its load will need.
 """
 
 from __future__ import annotations
@@ -13,31 +12,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.supports.feet import STEP_MM, nearest_feet
-from printprep.supports.forest import Forest
+from printprep.supports.column_feet import STEP_MM, nearest_feet
+from printprep.supports.column_forest import Forest
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
-    from printprep.supports.dexels import Dexels
     from printprep.supports.distance_to_footing import DistanceToFooting
-    from printprep.supports.members import Members
+    from printprep.supports.inside_lookup import InsideLookup
+    from printprep.supports.member_sizes import MemberSizes
 
-# Other tips that are weighed as partners, those that would be met highest.
+# Other tips tried as partners: those with the highest meetings.
 PARTNERS = 16
-# Nearer than this, seen along the way, two places are one.
+# Two places nearer than this are one.
 SAME_MM = 1e-6
-# Feet so near a tip are looked for exactly before anything else is weighed.
+# Feet so near a tip are searched exactly, before any other way down is weighed.
 NEAR_MM = 2.5
-# Where a column enters the shell its end is yet to be found: nothing leans on it there.
+# A column's end is not final where it enters the shell: no other column leans on it there.
 FOOT_MM = 1.0
 
 
 def raise_columns(
-    tips: Float, dexels: Dexels, landings: DistanceToFooting, members: Members, forest: Forest
+    tips: Float,
+    lookup: InsideLookup,
+    footings: DistanceToFooting,
+    members: MemberSizes,
+    forest: Forest,
 ) -> None:
-    """Bring every tip (n, 3) down; the forest grows by what that takes."""
+    """Carry every tip (n, 3) mm down to the shell, adding columns to the forest."""
     free = [forest.plant(tip) for tip in tips]
-    near, feet = nearest_feet(tips, np.zeros(len(tips)), dexels, members, NEAR_MM)
+    near, feet = nearest_feet(tips, np.zeros(len(tips)), lookup, members, NEAR_MM)
     stubs = dict(zip(free, zip(near.tolist(), feet, strict=True), strict=True))
     waiting = dict.fromkeys(free, True)
     heap = [(-float(forest.place(index)[2]), index) for index in free]
@@ -47,13 +50,13 @@ def raise_columns(
         if not waiting.pop(tip, False):
             continue
         place, above = forest.place(tip), forest.above_mm[tip]
-        length = float(landings.way_mm(place[None])[0])
+        length = float(footings.way_mm(place[None])[0])
         near_mm, foot = stubs.get(tip, (np.inf, place))
         if np.isfinite(near_mm):
             length = near_mm
         cost = float(members.volume_mm3(above, length))
         meeting = _best_partner(
-            tip, np.fromiter(waiting, np.int64), cost, landings, members, forest
+            tip, np.fromiter(waiting, np.int64), cost, footings, members, forest
         )
         if meeting is not None:
             cost = meeting[0]
@@ -62,7 +65,7 @@ def raise_columns(
             forest.join(tip, joint)
         elif meeting is None:
             if np.isinf(near_mm):
-                foot = _foot(place, above, dexels, members)
+                foot = _foot(place, above, lookup, members)
             forest.stand(tip, foot)
         else:
             _, partner, where, left = meeting
@@ -77,10 +80,10 @@ def raise_columns(
             heapq.heappush(heap, (-float(where[2]), met))
 
 
-def _foot(place: Float, above_mm: float, dexels: Dexels, members: Members) -> Float:
-    """The end of the straight column that stands soonest."""
-    deepest = float(place[2]) - dexels.floor_mm + STEP_MM
-    _, feet = nearest_feet(place[None], np.array([above_mm]), dexels, members, deepest)
+def _foot(place: Float, above_mm: float, lookup: InsideLookup, members: MemberSizes) -> Float:
+    """(3,) mm, the foot of the shortest straight column from a place (3,) mm."""
+    deepest = float(place[2]) - lookup.floor_mm + STEP_MM
+    _, feet = nearest_feet(place[None], np.array([above_mm]), lookup, members, deepest)
     foot: Float = feet[0]
     return foot
 
@@ -89,13 +92,15 @@ def _best_partner(
     tip: int,
     others: Int,
     cost: float,
-    landings: DistanceToFooting,
-    members: Members,
+    footings: DistanceToFooting,
+    members: MemberSizes,
     forest: Forest,
 ) -> tuple[float, int, Float, float] | None:
-    """Cost, partner, place of meeting and way left below it, where that is cheaper than ``cost``.
+    """The cheapest meeting with another tip; None where it costs ``cost`` mm³ or more.
 
-    What the partner would have cost alone is taken off.
+    others : (k,) numbers of the tips to try.
+    Returns cost in mm³ without the partner's own, partner, place (3,) mm of the meeting, and length
+    in mm of the way below it.
     """
     if len(others) == 0:
         return None
@@ -108,7 +113,7 @@ def _best_partner(
     others, there, away, d, fall = others[near], there[near], away[near], d[near], fall[near]
     share = np.minimum(fall * members.lean_tan, d) / np.maximum(d, SAME_MM)
     where = np.column_stack([here[:2] + share[:, None] * away, here[2] - fall])
-    left, alone = landings.way_mm(where), landings.way_mm(there)
+    left, alone = footings.way_mm(where), footings.way_mm(there)
     above, above_others = forest.above_mm[tip], np.array([forest.above_mm[k] for k in others])
     mine, theirs = (np.linalg.norm(where - place, axis=1) for place in (here, there))
     trunk = np.maximum(above + mine, above_others + theirs)
@@ -121,8 +126,8 @@ def _best_partner(
     return float(total[best]), int(others[best]), where[best], float(left[best])
 
 
-def _best_axis(tip: int, cost: float, members: Members, forest: Forest) -> int | None:
-    """The point of an axis that is cheapest to lean on, where that is cheaper than ``cost``."""
+def _best_axis(tip: int, cost: float, members: MemberSizes, forest: Forest) -> int | None:
+    """The cheapest point of an axis to lean on; None where it costs ``cost`` mm³ or more."""
     here, above = forest.place(tip), forest.above_mm[tip]
     axes = forest.axes()
     fall = here[2] - axes.place_mm[:, 2]

@@ -1,11 +1,12 @@
-"""How far it is from anywhere in a room to a place where a column may stand.
+"""The distance from any place in the hollowable volume down to where a column may stand.
 
-Notation: a landing is a disc of radius R with no point in the room; a column that ends there stands
-on the shell with its whole rim.  Cells are a by a wide and a / tan θ high, so that a step down by
-k cells may go k cells sideways.  L is the least length over ways of steps to a landing.
+Notation: a footing is a disc of radius R with no point in the hollowable volume; a column that ends
+there stands on the shell with its whole rim.  Cells are a by a wide and a / tan θ high, so that a
+step down by k cells may go k cells sideways.  L is the least length over ways of steps to a
+footing.
 
-L follows from the floor upward: that of a cell is the least, over steps of one, two and three
-layers, of the step's length and the L where it ends.
+L follows from the floor upward: L of a cell is the least, over steps down by one, two and three
+layers, of the step's length plus the L where it ends.
 """
 
 from __future__ import annotations
@@ -16,50 +17,53 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.supports.feet import ring
+from printprep.supports.column_feet import ring
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
-    from printprep.supports.dexels import Dexels
-    from printprep.supports.members import Members
+    from printprep.supports.inside_lookup import InsideLookup
+    from printprep.supports.member_sizes import MemberSizes
 
 CELL_MM = 1.0
 _LAYERS = 3
-# Of the hexagon that stands for a disc: feet are looked for exactly later.
+# A hexagon stands for the disc: feet are searched exactly later.
 _CORNERS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class DistanceToFooting:
-    """low_mm : (3,) middle of cell (0, 0, 0);  cell_mm : (3,);  length_mm : (nx, ny, nz), L."""
+    """L of every cell.
+
+    low_mm : (3,) mm, middle of cell (0, 0, 0);  cell_mm : (3,) mm;  length_mm : (nx, ny, nz) mm, L.
+    """
 
     low_mm: Float
     cell_mm: Float
     length_mm: Float
 
     @staticmethod
-    def of(dexels: Dexels, members: Members, top_mm: float) -> DistanceToFooting:
-        """Find the way down from everywhere below ``top_mm``."""
+    def of(lookup: InsideLookup, members: MemberSizes, top_mm: float) -> DistanceToFooting:
+        """Measure the way down from every place below ``top_mm``."""
         cell = np.array([CELL_MM, CELL_MM, CELL_MM / members.lean_tan])
-        low = np.append(dexels.low_mm, dexels.floor_mm) - cell
+        low = np.append(lookup.low_mm, lookup.floor_mm) - cell
         x, y = (
             np.arange(
-                low[k], dexels.low_mm[k] + dexels.shape[k] * dexels.step_mm + cell[k], cell[k]
+                low[k], lookup.low_mm[k] + lookup.shape[k] * lookup.step_mm + cell[k], cell[k]
             )
             for k in range(2)
         )
         z = np.arange(low[2], top_mm + cell[2], cell[2])
-        radius = members.leaning_radius_mm + dexels.step_mm / 2
+        radius = members.leaning_radius_mm + lookup.step_mm / 2
         rim = radius * np.concatenate([np.zeros((1, 3)), ring(_CORNERS)])
         flat = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-        at = dexels.at_heights(z)
+        at = lookup.at_heights(z)
         held = np.zeros((len(x), len(y), len(z)), dtype=bool)
         for offset in rim[:, :2]:
-            held |= at[dexels.nearest(flat + offset)]
+            held |= at[lookup.nearest(flat + offset)]
         return DistanceToFooting(low, cell, _lengths(held, cell))
 
     def way_mm(self, points: Float) -> Float:
-        """(n,) lengths of the ways down from points (n, 3), by the nearest cell."""
+        """(n,) mm, lengths of the ways down from points (n, 3) mm, by the nearest cell."""
         index = np.rint((points - self.low_mm) / self.cell_mm).astype(np.int64)
         index = np.minimum(np.maximum(index, 0), np.array(self.length_mm.shape) - 1)
         result: Float = self.length_mm[index[:, 0], index[:, 1], index[:, 2]]
@@ -67,8 +71,11 @@ class DistanceToFooting:
 
 
 def _lengths(held: Bool, cell: Float) -> Float:
-    """(nx, ny, nz) L, from where columns are held up, of that shape, layer upon layer."""
-    # Beyond the cells, on every side, none is to be stepped to.
+    """(nx, ny, nz) mm, L, layer upon layer.
+
+    held : (nx, ny, nz), cells that are not a footing;  cell : (3,) mm.
+    """
+    # No step leads beyond the cells, on any side.
     length = np.full([n + 2 * _LAYERS for n in held.shape[2:] + held.shape[:2]], np.inf)
     inner = length[(slice(_LAYERS, -_LAYERS),) * 3]
     inner[...] = 0.0
@@ -83,9 +90,10 @@ def _lengths(held: Bool, cell: Float) -> Float:
 
 
 def _steps(cell: Float) -> tuple[Int, Float]:
-    """(s, 3) steps down by layers, along x and along y, in cells, and (s,) their lengths.
+    """(s, 3) steps in cells (layers down, along x, along y), and (s,) mm, their lengths.
 
-    Of those over several layers only the widest: the others are made of shorter ones.
+    Over several layers only the widest steps count: shorter steps make up the others.
+    cell : (3,) mm.
     """
     moves = [
         (-layers, i, j)

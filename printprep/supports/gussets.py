@@ -1,9 +1,9 @@
-"""Gussets: capitals widened toward what they just fail to carry.
+"""Gussets: widen capitals toward points that lie just out of their reach.
 
 What the rule flags beside a capital lies a few hundredths of a millimetre out of its reach: a
-groove between its flank and a slope, which closes too early.  A funnel that began a little lower on
-the capital's column would carry it; of that funnel only ribs are built, as thick as the column,
-from there to each point of the patch, and their hull.
+groove between its flank and a slope closes too early.  A funnel that begins a little lower on the
+capital's column carries it.  Of that funnel only ribs are built, as thick as the column, to each
+point of the patch, and their hull.
 """
 
 from __future__ import annotations
@@ -19,25 +19,26 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
     from printprep.supports.capitals import Capitals
-    from printprep.supports.forest import Forest
-    from printprep.supports.members import Members
+    from printprep.supports.column_forest import Forest
+    from printprep.supports.member_sizes import MemberSizes
 
-# A gusset reaches no farther out of its capital: less than a line's width, it needs no own column.
+# A gusset reaches no farther out of its capital: less than a line's width needs no own column.
 MOST_OUT_MM = 0.4
-# It begins at most so far below the capital's node, looked for in steps.
+# A gusset begins at most so far below the capital's node; the search goes down in steps.
 MOST_DROP_MM = 2.0
 STEP_MM = 0.1
-# So far beyond each point of a patch it reaches.
+# It reaches so far beyond each point of a patch.
 MARGIN_MM = 0.1
 _STEPS = 6
 
 
 def gussets(
-    points: Float, capitals: Capitals, forest: Forest, members: Members
+    points: Float, capitals: Capitals, forest: Forest, members: MemberSizes
 ) -> tuple[list[Frustum], Float]:
-    """Gussets for those of the points (n, 3) that capitals almost carry, and the points left.
+    """Build gussets for the points that capitals almost carry.
 
-    forest : its first places are the capitals' nodes, in their order.
+    points : (n, 3) mm;  forest : its first places are the capitals' nodes, in the same order.
+    Returns the gussets, and the points (k, 3) mm that are left.
     """
     nodes = capitals.node_mm
     away = points[:, None] - nodes[None]
@@ -54,8 +55,8 @@ def gussets(
     return found, points[left]
 
 
-def _gusset(points: Float, node: int, forest: Forest, members: Members) -> Frustum | None:
-    """From the highest place under a node that reaches all points (k, 3), or None."""
+def _gusset(points: Float, node: int, forest: Forest, members: MemberSizes) -> Frustum | None:
+    """The gusset from the highest place under a node that reaches all points (k, 3) mm, or None."""
     for place, way, above_mm in _below(node, forest):
         half = float(members.across_mm(np.array(above_mm)))
         away = points - place
@@ -67,7 +68,7 @@ def _gusset(points: Float, node: int, forest: Forest, members: Members) -> Frust
 
 
 def _rib(away: Float, half_mm: float) -> Float:
-    """(n, 3) mm, the upper end of a round rib from the origin that just covers a point.
+    """(n, 3) mm, corners of the upper end of a round rib from the origin that just covers a point.
 
     away : (3,) mm, that point.
     """
@@ -82,7 +83,7 @@ def _rib(away: Float, half_mm: float) -> Float:
 
 
 def _below(index: int, forest: Forest) -> Sequence[tuple[Float, Float, float]]:
-    """Places down the axes from one, (3,), with the way down there, (3,), and the tree above."""
+    """Places (3,) mm down the axes from a node, with the column's way (3,) and the length above."""
     found = []
     left = MOST_DROP_MM
     while left > 0 and forest.down[index] >= 0:

@@ -1,7 +1,7 @@
-"""Samples in sets, each carried by one funnel: where it must stand, and what it takes.
+"""Sets of ceiling samples, each carried by one funnel: the funnel's node and its volume.
 
-All sets are looked at together: their samples lie one set after the other, (m, 3), and ``start``
-(s,) says where each begins.  Notation as in capitals.py.
+All sets are computed together: their samples lie one set after the other, (m, 3), and ``start``
+(s,) holds where each set begins.  Notation as in capitals.py.
 """
 
 from __future__ import annotations
@@ -13,21 +13,25 @@ import numpy as np
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
-    from printprep.supports.members import Members
+    from printprep.supports.member_sizes import MemberSizes
 
-# What neighbouring funnels must overlap between samples.
+# The overlap that neighbouring funnels need between samples.
 OVERLAP_MM = 0.1
 # A funnel carries nothing farther from its axis, nor higher above its node.
 REACH_MM = 3.6
 RISE_MM = 5.0
-# What of a whole funnel counts beside what it fills under its samples: some of it stands out of
-# them, in the room or in funnels beside it.
+# The share of a whole funnel that counts beside what it fills under its samples: some of it reaches
+# beyond them, into the cavity or into funnels beside it.
 BESIDE = 0.3
 
 
 @dataclass(frozen=True, eq=False)
 class SetCover:
-    """points_mm : (m, 3);  start : (s,);  owner : (m,) the set of each point."""
+    """Sets of samples.
+
+    points_mm : (m, 3) mm, set after set;  start : (s,) first point of each set;  owner : (m,) the
+    set of each point.
+    """
 
     points_mm: Float
     start: Int
@@ -35,26 +39,27 @@ class SetCover:
 
     @staticmethod
     def of(points: Float, sizes: Int) -> SetCover:
-        """Points set after set, as many as ``sizes`` (s,) says, none of which is 0."""
+        """Sets from points (m, 3) mm, set after set, and their sizes (s,), none of them 0."""
         return SetCover(points, np.cumsum(sizes) - sizes, np.repeat(np.arange(len(sizes)), sizes))
 
     @property
     def tops_mm(self) -> Float:
-        """(s,) the highest point of each."""
+        """(s,) mm, the highest point of each set."""
         result: Float = np.maximum.reduceat(self.points_mm[:, 2], self.start)
         return result
 
     def farthest_mm(self, nodes: Float) -> Float:
-        """(s,) how far the farthest point of each is from its node (s, 3), seen from above."""
+        """(s,) mm, from each node (s, 3) mm to the farthest point of its set, seen from above."""
         x, y = np.ascontiguousarray(self.points_mm[:, :2].T)
         result: Float = np.maximum.reduceat(self._away(x, y, nodes), self.start)
         return result
 
-    def highest(self, places: Float, members: Members, steps: int) -> Float:
-        """(s, 3) the highest nodes found that carry all of their sets, sought from places (s, 2).
+    def highest(self, places: Float, members: MemberSizes, steps: int) -> Float:
+        """(s, 3) mm, the highest nodes found that carry all of their sets.
 
-        By walking toward the sample that holds the node lowest, in shrinking steps.  (The centre of
-        a smallest enclosing ball is found so: Bădoiu and Clarkson 2003.)
+        The search starts at places (s, 2) mm and steps toward the sample that keeps the node
+        lowest, in shrinking steps.  (Bădoiu and Clarkson 2003 find the centre of a smallest
+        enclosing ball so.)
         """
         x, y, z = np.ascontiguousarray(self.points_mm.T)
         place, slack = places.copy(), members.radius_mm - OVERLAP_MM
@@ -72,17 +77,18 @@ class SetCover:
         return best
 
     def _away(self, x: Float, y: Float, places: Float) -> Float:
-        """(m,) how far points (x, y) are from the places (s, 2) of their sets."""
+        """(m,) mm, from points x (m,), y (m,) to the places (s, 2) mm of their sets."""
         dx, dy = x - places[:, 0].take(self.owner), y - places[:, 1].take(self.owner)
         dx *= dx
         dy *= dy
         dx += dy
         return np.sqrt(dx, out=dx)
 
-    def volume_mm3(self, nodes: Float, members: Members, area_mm2: float) -> Float:
-        """(s,) what funnels on nodes (s, 3) fill under their sets, a sample standing for an area.
+    def volume_mm3(self, nodes: Float, members: MemberSizes, area_mm2: float) -> Float:
+        """(s,) mm³, what funnels on nodes (s, 3) mm fill under their sets.
 
-        inf where one would carry farther or higher than a funnel may.
+        Each sample stands for ``area_mm2``.  inf where a funnel carries farther or higher than it
+        may.
         """
         x, y, z = np.ascontiguousarray(self.points_mm.T)
         d, above = self._away(x, y, nodes[:, :2]), z - nodes[:, 2].take(self.owner)

@@ -1,8 +1,8 @@
 """Capitals and columns as convex solids of the boolean kernel.
 
-A round section is a regular polygon around its circle.  A column is round across its axis; cut
-level it is an ellipse, as much longer toward its lean as the column leans.  Where columns meet, the
-lower one begins with the hull of all that stand on it, so that every joint is covered.
+A round section is a regular polygon around its circle.  A column is round across its axis; its
+level section is an ellipse, longer toward the lean.  Where columns meet, the lower one begins with
+the hull of all that stand on it, so that it covers every joint.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
     from printprep.supports.capitals import Capitals
-    from printprep.supports.forest import Forest
-    from printprep.supports.members import Members
+    from printprep.supports.column_forest import Forest
+    from printprep.supports.member_sizes import MemberSizes
 
 SIDES = 12
-# Solids that only touch would leave coincident faces: each goes on so far into the next.
+# Solids that only touch leave coincident faces: each reaches so far into the next.
 INTO_MM = 0.03
 # A funnel ends so far above the ceiling it carries.
 BEYOND_MM = 0.3
-# A column that falls less keeps the whole section it begins with: narrowing over so short a way, it
-# would lean out too far beside its axis.
+# A column with a smaller fall keeps the whole section it begins with: narrowing over so short a
+# way, its side leans too far out beside its axis.
 SHORT_MM = 2.0
 
 
@@ -36,7 +36,7 @@ SHORT_MM = 2.0
 class Frustum:
     """The hull of level sections.
 
-    corners : (n, 3) of all;  across_mm : least thickness across its axis.
+    corners : (n, 3) mm, of all sections;  across_mm : least thickness across its axis.
     """
 
     corners: Float
@@ -44,7 +44,7 @@ class Frustum:
 
     @staticmethod
     def of_discs(low: Float, low_radius_mm: float, high: Float, high_radius_mm: float) -> Frustum:
-        """Between two discs with middles (x, y, z), ``low`` under ``high``."""
+        """The hull of two level discs with middles (3,) mm, ``low`` under ``high``."""
         upright = np.array([0.0, 0.0, -1.0])
         lower = low + section(upright, low_radius_mm)
         upper = high + section(upright, high_radius_mm)
@@ -54,12 +54,12 @@ class Frustum:
         return Frustum(np.concatenate([lower, upper]), across_mm)
 
     def bounds(self) -> tuple[Float, Float]:
-        """Lower and upper corner of a box around it."""
+        """Lower and upper corner (3,) mm of a box around it, both (x, y, z)."""
         return self.corners.min(axis=0), self.corners.max(axis=0)
 
 
 def section(way: Float, radius_mm: float) -> Float:
-    """(SIDES, 3) corners of what a round column along ``way`` (3,) shows, cut level."""
+    """(SIDES, 3) mm, corners of the level section of a round column along ``way`` (3,)."""
     steep = float(np.hypot(way[0], way[1]))
     along = way[:2] / steep if steep > 0 else np.array([1.0, 0.0])
     longer = float(np.linalg.norm(way)) / abs(float(way[2]))
@@ -72,7 +72,7 @@ def section(way: Float, radius_mm: float) -> Float:
 
 
 def united(pieces: Sequence[Frustum]) -> Manifold:
-    """All pieces as one solid."""
+    """Unite pieces into one solid."""
     from manifold3d import Manifold, OpType
 
     return Manifold.batch_boolean(
@@ -80,8 +80,8 @@ def united(pieces: Sequence[Frustum]) -> Manifold:
     )
 
 
-def funnels(capitals: Capitals, members: Members) -> list[Frustum]:
-    """Capitals, from each node up to a little over its top."""
+def funnels(capitals: Capitals, members: MemberSizes) -> list[Frustum]:
+    """The solids of capitals, from each node up to a little over its top."""
     found = []
     for node, top in zip(capitals.node_mm, capitals.top_mm, strict=True):
         rise = max(float(top - node[2]), 0.0) + BEYOND_MM
@@ -91,8 +91,8 @@ def funnels(capitals: Capitals, members: Members) -> list[Frustum]:
     return found
 
 
-def columns(forest: Forest, members: Members) -> list[Frustum]:
-    """Between the places of a forest, from above, thick enough for what they carry."""
+def columns(forest: Forest, members: MemberSizes) -> list[Frustum]:
+    """The solids of a forest's columns, from above, as thick as their load needs."""
     found = []
     places = np.array([forest.place(index) for index in range(len(forest))]).reshape(-1, 3)
     standing: list[list[Float]] = [[] for _ in places]
@@ -102,7 +102,7 @@ def columns(forest: Forest, members: Members) -> list[Frustum]:
             continue
         way = places[lower] - places[index]
         fall, length = -float(way[2]), float(np.linalg.norm(way))
-        if fall <= 0:  # two tips in one place
+        if fall <= 0:  # both are at one place
             standing[lower] += standing[index]
             continue
         above = forest.above_mm[index]

@@ -1,4 +1,4 @@
-"""How thick material is at every place of a surface, and how wide the gaps outside it are."""
+"""Thickness of the material at every place of a surface, and width of the gaps outside it."""
 
 from printprep.thickness.local import LocalThickness, local_thickness
 from printprep.thickness.thin import Thin, gap_places, thin_places

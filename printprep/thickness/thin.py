@@ -1,4 +1,4 @@
-"""Where a part is thinner than a limit, and where it comes closer to itself than another."""
+"""Finds places where a part is thinner than a limit, and gaps narrower than a limit."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ import numpy as np
 
 from printprep.mesh.aabb_tree import SurfaceTree
 from printprep.mesh.measure import arrays
-from printprep.thickness.local import LocalThickness, beside, local_thickness
+from printprep.thickness.local import LocalThickness, local_thickness, perpendiculars
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Bool, Float
 
-# One point a square millimetre, within these numbers.
+# One point per square millimetre, but not fewer or more than this.
 _FEWEST, _MOST = 5_000, 60_000
-# Sides farther from parallel than this are an edge or a crease, and no wall or gap: at an edge of
-# 30° a layer of 1.2 mm loses 2 mm, and nothing breaks.
+# Sides farther from parallel than this are an edge or a crease, not a wall or a gap: at an edge of
+# 30° material thinner than 1.2 mm is a strip of 2 mm, and nothing breaks.
 _TAPER_DEG = 30.0
-# Chords through the middle of a thin place, at right angles to the way across.
+# Chords through the middle of a thin place, at right angles to the direction across.
 _CHORDS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Thin:
-    """Places of a surface, each standing for the same area.
+    """Thin places or gaps, each of the same area of surface.
 
-    middle : (n, 3) mm, half way across;  thick_mm : (n,) across.
-    wide_mm : (n,) the shortest way through the middle at right angles to that.
-    area_mm2 : of surface that each place stands for.
+    middle : (k, 3) mm, half way across;  thick_mm : (k,) distance across;
+    wide_mm : (k,) shortest chord through the middle at right angles to that direction;
+    area_mm2 : area of surface of each place.
     """
 
     middle: Float
@@ -44,14 +44,15 @@ class Thin:
 
     @property
     def total_mm2(self) -> float:
+        """Area of surface of all places."""
         return len(self) * self.area_mm2
 
     def only(self, which: Bool) -> Thin:
-        """Those places."""
+        """The places that are True in which (k,)."""
         return Thin(self.middle[which], self.thick_mm[which], self.wide_mm[which], self.area_mm2)
 
     def patches(self, link_mm: float) -> list[Thin]:
-        """The places in groups: what lies closer than this belongs together."""
+        """The places in groups: places closer than ``link_mm`` belong to one group."""
         if not len(self):
             return []
         from scipy.sparse.csgraph import connected_components
@@ -63,29 +64,29 @@ class Thin:
 
     @property
     def thinnest(self) -> tuple[float, tuple[float, float, float]]:
-        """Least thickness, and where."""
+        """The least thickness, and its place (x, y, z)."""
         least = int(np.argmin(self.thick_mm))
         x, y, z = self.middle[least].tolist()
         return float(self.thick_mm[least]), (x, y, z)
 
 
 def thin_places(part: Manifold, limit_mm: float) -> Thin:
-    """Where material is thinner than a limit between sides that are nearly parallel."""
+    """Places where material between nearly parallel sides is thinner than a limit."""
     found = _mapped(part, limit_mm, gaps=False)
     middle, across, thick = _below(found, limit_mm)
     surface, wide = SurfaceTree(*arrays(part)), np.full(len(middle), np.inf)
-    first, second = beside(across) if len(across) else (across, across)
+    first, second = perpendiculars(across) if len(across) else (across, across)
     for turn in np.arange(_CHORDS) * (np.pi / _CHORDS):
-        way = np.cos(turn) * first + np.sin(turn) * second
-        chord = surface.first_hit(middle, way)[0] + surface.first_hit(middle, -way)[0]
+        along = np.cos(turn) * first + np.sin(turn) * second
+        chord = surface.first_hit(middle, along)[0] + surface.first_hit(middle, -along)[0]
         wide = np.minimum(wide, chord)
     return Thin(middle, thick, wide, found.area_mm2)
 
 
 def gap_places(part: Manifold, limit_mm: float) -> Thin:
-    """Where the space outside is narrower than a limit between nearly parallel sides.
+    """Places where the space outside, between nearly parallel sides, is narrower than a limit.
 
-    Sides that meet, as where a ball lies on a plate, are among them; they taper to nothing.
+    They include sides that meet, as where a ball lies on a plate: there the gap tapers to nothing.
     """
     found = _mapped(part, limit_mm, gaps=True)
     middle, _, thick = _below(found, limit_mm)
@@ -103,9 +104,9 @@ def _mapped(part: Manifold, limit_mm: float, *, gaps: bool) -> LocalThickness:
 
 
 def _below(found: LocalThickness, limit_mm: float) -> tuple[Float, Float, Float]:
-    """Middles, unit vectors across, and thickness of what is below the limit."""
+    """(k, 3) mm, middles, (k, 3) unit vectors across, and (k,) mm, thickness below the limit."""
     thin = (found.ball_mm < limit_mm) & np.isfinite(found.across[:, 0])
-    way = found.across[thin] - found.points[thin]
-    length = np.linalg.norm(way, axis=1, keepdims=True)
-    unit = np.divide(way, length, out=-found.normals[thin], where=length > 0)
-    return found.points[thin] + way / 2, unit, found.ball_mm[thin]
+    chord = found.across[thin] - found.points[thin]
+    length = np.linalg.norm(chord, axis=1, keepdims=True)
+    unit = np.divide(chord, length, out=-found.normals[thin], where=length > 0)
+    return found.points[thin] + chord / 2, unit, found.ball_mm[thin]

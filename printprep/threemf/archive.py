@@ -1,7 +1,7 @@
-"""Parts of a zip that a stranger made: looked up, never extracted, never larger than agreed.
+"""Reads parts of an untrusted zip: by name from memory, never extracted, never beyond a size limit.
 
-Part names are compared as OPC asks (without regard to case, leading slash, or dot segments) and
-only ever looked up in the archive's own list, so that no name can reach the file system.
+Part names are compared as OPC asks (case, leading slash and dot segments do not matter) and only
+looked up in the archive's list, so that no name can reach the file system.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from urllib.parse import unquote
 
 from printprep.errors import InputError
 
-# A model part of 1 GiB holds some ten million triangles.  Meshes were seen to deflate by up to 30;
-# a part that inflates more than that by far, and to a size that matters, is a bomb.
+# A model part of 1 GiB holds about ten million triangles.  Real meshes deflate by a factor of up to
+# 30; a part that inflates by far more, to a size that matters, is a zip bomb.
 PART_BYTES_MAX = 1 << 30
 RATIO_MAX = 150
 RATIO_COUNTS_FROM_BYTES = 64 << 20
 PARTS_MAX = 20_000
-SMALL_PART_BYTES_MAX = 8 << 20  # relationships and slicer configs, which are held as a whole
+_AGAIN = "Download or export the file again."
+SMALL_PART_BYTES_MAX = 8 << 20  # relationships and slicer configs, which are read as a whole
 
 _DAMAGE = (
     zipfile.BadZipFile,
@@ -40,24 +41,24 @@ _DAMAGE = (
 
 
 class Archive:
-    """A zip opened for reading parts by name; use it as a context manager.
+    """A zip, open for reading parts by name; a context manager.
 
-    Raises InputError that names the file where it is no zip, damaged, encrypted or a bomb.
+    Raises InputError that names the file where it is not a zip, damaged, encrypted or a zip bomb.
     """
 
     def __init__(self, path: Path) -> None:
         self.name = path.name
         try:
-            # read whole: a zip on disk can change under the reader, bytes in memory cannot
+            # Read as a whole: a zip on disk can change while it is read, bytes in memory cannot.
             self._zip = zipfile.ZipFile(io.BytesIO(path.read_bytes()))
         except _DAMAGE as error:
             raise InputError(
-                f"{self.name}: not a 3MF file that can be opened ({error})",
-                "a 3MF is a zip archive; download or export it again",
+                f"{self.name} cannot be opened as a 3MF file: {error}.",
+                "A 3MF is a zip archive: download or export it again.",
             ) from error
         entries = [entry for entry in self._zip.infolist() if not entry.is_dir()]
         if len(entries) > PARTS_MAX:
-            raise InputError(f"{self.name}: holds {len(entries)} parts, too many to be a model")
+            raise InputError(f"{self.name} holds {len(entries)} parts, too many for a model.")
         self._entries = {_key(entry.filename): entry for entry in reversed(entries)}
 
     def __enter__(self) -> Self:
@@ -80,27 +81,30 @@ class Archive:
 
     @contextmanager
     def open(self, part: str) -> Iterator[IO[bytes]]:
-        """A part as a stream; damage met while it is read is an InputError too."""
+        """A part as a stream; damage found while it is read is an InputError too."""
         entry = self._entries.get(_key(part))
         if entry is None:
-            raise InputError(f"{self.name}: the part {part} is missing")
+            raise InputError(f"{self.name}: the part {part} is missing.", _AGAIN)
         size, packed = entry.file_size, max(entry.compress_size, 1)
         if size > PART_BYTES_MAX or (size > RATIO_COUNTS_FROM_BYTES and size > RATIO_MAX * packed):
             raise InputError(
-                f"{self.name}: the part {part} unpacks to {size / 2**20:.0f} MiB, refused"
+                f"{self.name}: the part {part} unpacks to {size / 2**20:.0f} MiB, which is too "
+                "large for a model."
             )
         try:
             with self._zip.open(entry) as stream:
                 yield stream
         except _DAMAGE as error:
-            raise InputError(f"{self.name}: the part {part} is damaged ({error})") from error
+            raise InputError(
+                f"{self.name}: the part {part} is damaged: {error}.", _AGAIN
+            ) from error
 
     def read(self, part: str, limit_bytes: int = SMALL_PART_BYTES_MAX) -> bytes:
-        """A whole part; InputError where it is larger than `limit_bytes`."""
+        """The content of a part; InputError where it is larger than `limit_bytes`."""
         with self.open(part) as stream:
             content = stream.read(limit_bytes + 1)
         if len(content) > limit_bytes:
-            raise InputError(f"{self.name}: the part {part} is larger than {limit_bytes} bytes")
+            raise InputError(f"{self.name}: the part {part} is larger than {limit_bytes} bytes.")
         return content
 
 

@@ -1,7 +1,7 @@
-"""The zip container of a 3MF: the same parts give the same bytes, on every system.
+"""Packs the zip container of a 3MF: the same parts give the same bytes, on every system.
 
 Source: ECMA-376 part 2 (Open Packaging Conventions); 3MF core specification 1.3, section 2.
-Bytes are the same wherever zlib is the same; zlib-ng packs otherwise than zlib.
+The bytes are the same wherever zlib is the same; zlib-ng packs differently.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import io
 import zipfile
 from collections.abc import Mapping
 
-from printprep.threemf.text import escape
+from printprep.threemf.xml_text import escape
 
 MODEL_PART = "3D/3dmodel.model"
 THUMBNAIL_PART = "Metadata/thumbnail.png"
@@ -35,7 +35,7 @@ _READABLE = 0o100644 << 16
 
 
 def pack(parts: Mapping[str, bytes]) -> bytes:
-    """Zip `parts` (part name without leading slash → content), types and relationships added.
+    """Zip `parts` (part name without leading slash → content), with types and relationships.
 
     Raises ValueError for a part whose suffix has no content type, or whose name is not a plain
     relative path.
@@ -45,9 +45,9 @@ def pack(parts: Mapping[str, bytes]) -> bytes:
         suffix = name.rpartition(".")[2]
         pieces = name.split("/")
         if suffix not in _KNOWN_TYPES or "\\" in name or not name.isascii():
-            raise ValueError(f"{name!r} cannot be a part of a 3MF: suffix or characters")
+            raise ValueError(f"{name!r} has a suffix or characters that no part of a 3MF has")
         if any(piece.strip(". ") != piece or not piece for piece in pieces[:-1]):
-            raise ValueError(f"{name!r} cannot be a part of a 3MF: not a plain relative path")
+            raise ValueError(f"{name!r} is not a plain relative path, as a part of a 3MF needs")
         suffixes.add(suffix)
     whole = {"[Content_Types].xml": _types(sorted(suffixes)), "_rels/.rels": _rels(parts), **parts}
     buffer = io.BytesIO()

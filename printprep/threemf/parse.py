@@ -1,7 +1,7 @@
-"""XML parts of a 3MF, streamed into flat lists: no tree, no entities, no network.
+"""Parses the XML parts of a 3MF as a stream into flat lists: no tree, no entities, no network.
 
-Elements count by their local name within the namespace of the root, whichever that is: drafts and
-tests of the standard use several.  Elements of extensions are passed over with all they contain.
+Elements count by their local name in the namespace of the root, whatever that is: drafts and tests
+of the standard use several.  Elements of extensions are skipped with their content.
 
 Source: 3MF core specification 1.3; production extension 1.1 (the path attribute).
 """
@@ -23,7 +23,7 @@ from defusedxml.ElementTree import DefusedXMLParser
 from printprep.errors import InputError
 
 _PRODUCTION = "{http://schemas.microsoft.com/3dmanufacturing/production/2015/06}path"
-# Required extensions that leave the triangles what they are; any other may redefine the shape.
+# Required extensions that do not change the triangles; any other may redefine the shape.
 _HARMLESS = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
@@ -48,10 +48,11 @@ Element = tuple[int, str, dict[str, str]]
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
-    """An object put somewhere: by a component, or by an item of the build.
+class ObjectReference:
+    """An object with its place, as a component or an item of the build names it.
 
-    part : model part the object is in, None for the same one;  transform : (4, 3), row vectors.
+    part : model part that holds the object, None for the same one;  transform : (4, 3) float64 in
+    the file's unit, for row vectors: point · transform[:3] + transform[3].
     """
 
     object_id: str
@@ -61,31 +62,31 @@ class Reference:
 
 @dataclass(eq=False)
 class ParsedObject:
-    """One <object>; coordinates flat and in the file's unit, indices flat."""
+    """One <object>: coordinates (3n,) in the file's unit and vertex indices (3m,), both flat."""
 
     kind: str
     name: str
     coordinates: array[float] = field(default_factory=lambda: array("d"))
     indices: array[int] = field(default_factory=lambda: array("q"))
-    components: list[Reference] = field(default_factory=list)
+    components: list[ObjectReference] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
 class ParsedModel:
-    """One model part: unit in mm, objects by id, the build's printable items."""
+    """One model part: its unit in mm, objects by id, and the printable items of the build."""
 
     unit_mm: float
     objects: dict[str, ParsedObject]
-    items: list[Reference]
+    items: list[ObjectReference]
 
 
 class _Model:
-    """Target of the XML parser; every complaint is a ValueError that names the element."""
+    """Target of the XML parser; every error is a ValueError that names the element."""
 
     def __init__(self) -> None:
         self.unit_mm = 1.0
         self.objects: dict[str, ParsedObject] = {}
-        self.items: list[Reference] = []
+        self.items: list[ObjectReference] = []
         self._namespaces: dict[str, str] = {}
         self._core: str | None = None
         self._skipping = 0
@@ -159,13 +160,13 @@ class _Model:
 
 
 def parse_model(stream: IO[bytes], label: str) -> ParsedModel:
-    """Read one model part.  Raises InputError that begins with `label` (file and part)."""
+    """Parse one model part.  Raises InputError that begins with `label` (file and part)."""
     parsed: ParsedModel = _feed(stream, _Model(), label)
     return parsed
 
 
 def parse_elements(content: bytes, label: str) -> list[Element]:
-    """Every element of a small part in document order."""
+    """All elements of a small part, in document order."""
 
     class _Flat:
         def __init__(self) -> None:
@@ -193,9 +194,12 @@ def _feed(stream: IO[bytes], target: Any, label: str) -> Any:
             parser.feed(chunk)
         return parser.close()
     except DefusedXmlException as error:
-        raise InputError(f"{label}: holds a document type or entities, refused") from error
+        raise InputError(
+            f"{label} holds a document type or entities, which a 3MF must not.",
+            "Export the model again, from another program if possible.",
+        ) from error
     except (ParseError, ValueError, LookupError) as error:
-        raise InputError(f"{label}: {error}") from error
+        raise InputError(f"{label}: {error}.", "Export the model again.") from error
 
 
 def _chunks(stream: IO[bytes]) -> Iterator[bytes]:
@@ -209,7 +213,7 @@ def _attribute(element: str, attributes: dict[str, str], key: str) -> str:
     return attributes[key].strip()
 
 
-def _reference(element: str, attributes: dict[str, str]) -> Reference:
+def _reference(element: str, attributes: dict[str, str]) -> ObjectReference:
     text = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0")
     try:
         numbers = [float(word) for word in text.split()]
@@ -217,7 +221,7 @@ def _reference(element: str, attributes: dict[str, str]) -> Reference:
         numbers = []
     if len(numbers) != 12 or not all(math.isfinite(number) for number in numbers):
         raise ValueError(f"the transform of <{element}> is not twelve numbers: {text!r}")
-    return Reference(
+    return ObjectReference(
         _attribute(element, attributes, "objectid"),
         attributes.get(_PRODUCTION),
         np.array(numbers, dtype=np.float64).reshape(4, 3),

@@ -1,8 +1,8 @@
-"""Which parts of an object a slicer does not print as such, by its own config in the 3MF.
+"""Finds the parts of an object that a slicer does not print, by the slicer's config in the 3MF.
 
-PrusaSlicer and its kin keep modifiers as ranges of triangles in the object's one mesh; BambuStudio
-and OrcaSlicer keep each as a component.  Negative volumes change the shape by a boolean that is not
-done here, so a file that has one is refused.
+PrusaSlicer and SuperSlicer keep modifiers as ranges of triangles in the one mesh of an object;
+BambuStudio and OrcaSlicer keep each as a component.  A negative volume is subtracted from the
+object, which printprep does not do, so a file with one is refused.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _NEGATIVE = ("NegativeVolume", "negative_part")
 
 @dataclass(frozen=True)
 class Unprinted:
-    """What to leave out of the root model's objects.
+    """The parts of the root model's objects that are not printed.
 
     triangles : object id → inclusive ranges of its triangles;
     components : pairs (id of the object on the bed, id of the component's object).
@@ -33,7 +33,7 @@ class Unprinted:
 
 
 def read_unprinted(archive: Archive) -> Unprinted:
-    """Read both kinds of config, where the archive has them; InputError where one is broken."""
+    """Read both kinds of config, if the archive has them.  Raises InputError for a broken one."""
     triangles: dict[str, list[tuple[int, int]]] = {}
     for object_id, volume, settings in _children(archive, CONFIG_PART, "volume"):
         kind = settings.get("volume_type", "ParameterModifier" if "modifier" in settings else "")
@@ -42,7 +42,8 @@ def read_unprinted(archive: Archive) -> Unprinted:
                 span = int(volume["firstid"]), int(volume["lastid"])
             except (KeyError, ValueError) as error:
                 raise InputError(
-                    f"{archive.name}: {CONFIG_PART} has a volume without a triangle range"
+                    f"{archive.name}: {CONFIG_PART} has a volume without a range of triangles.",
+                    "Export the model again.",
                 ) from error
             triangles.setdefault(object_id, []).append(span)
     components = set()
@@ -57,8 +58,8 @@ def read_unprinted(archive: Archive) -> Unprinted:
 def _left_out(archive: Archive, kind: str, name: str) -> bool:
     if kind in _NEGATIVE:
         raise InputError(
-            f"{archive.name}: the negative volume {name!r} would have to be subtracted first",
-            "subtract it in a modelling program and export the result",
+            f"{archive.name} has a negative volume, {name!r}, which printprep cannot subtract.",
+            "Subtract it in a modelling program and export the result.",
         )
     return kind not in _SOLID
 

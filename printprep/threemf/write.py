@@ -1,11 +1,11 @@
-"""Write a 3MF that PrusaSlicer prints as meant and lib3mf reads strictly without a warning.
+"""Writes a 3MF that PrusaSlicer prints as intended and lib3mf reads strictly without a warning.
 
-One item is one object: one mesh, made of volumes that follow one another, each with its own range
-of vertices and triangles.  What a slicer is to do with them stands in PrusaSlicer's own
-Metadata/Slic3r_PE_model.config.  Cavities belong into the mesh of a ModelPart, as inverted shells.
+One item is one object: one mesh, made of volumes one after another, each with its own range of
+vertices and triangles.  PrusaSlicer's Metadata/Slic3r_PE_model.config says what each volume is for.
+Cavities belong to the mesh of a ModelPart, as inverted shells.
 
-There is never a print config in the file and never a post_process key: both can carry commands
-that a slicer runs when it opens the file.
+The file never holds a print config or a post_process key: both can carry commands that a slicer
+runs when it opens the file.
 
 Source: 3MF core specification 1.3; PrusaSlicer's src/libslic3r/Format/3mf.cpp for the config.
 """
@@ -21,7 +21,7 @@ import numpy as np
 
 from printprep.errors import UsageError
 from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
-from printprep.threemf.text import clean, escape, triangle_lines, vertex_lines
+from printprep.threemf.xml_text import clean, escape, triangle_lines, vertex_lines
 
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
@@ -32,8 +32,7 @@ VolumeKind = Literal[
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _SLIC3R = "http://schemas.slic3r.org/3mf/2017/06"
-# The names the core specification gives a meaning; its two dates are left out, so that the same
-# part gives the same file.
+# Names from the core specification, without its two dates: the same part gives the same file.
 _METADATA = (
     "Title",
     "Designer",
@@ -49,10 +48,10 @@ _ATTACHMENT = re.compile(r"Metadata/[A-Za-z0-9_-]+\.(json|txt)")
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """A closed mesh and what it is for.
+    """A closed mesh and its purpose.
 
     vertices : (n, 3) mm;  faces : (m, 3) indices into them, counter-clockwise seen from outside;
-    settings : slicer keys for this volume alone (of use on a ParameterModifier).
+    settings : slicer keys of this volume only (useful on a ParameterModifier).
     """
 
     name: str
@@ -64,9 +63,9 @@ class Volume:
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """One object on the bed, which is z = 0; the slicer does not move it there.
+    """One object on the bed z = 0; the slicer does not move it.
 
-    settings : slicer keys of the object;  translation_mm : where its origin goes, (x, y, z).
+    settings : slicer keys of the object;  translation_mm : place of its origin, (x, y, z).
     """
 
     name: str
@@ -86,11 +85,11 @@ def write_3mf(
     """The 3MF file as bytes; the same arguments give the same bytes.
 
     attachments : part name ("Metadata/printprep.json") → content, JSON or text;
-    metadata : name of the core specification ("Title", "Application", …) → text;
-    plain : leave PrusaSlicer's config out, and with it every setting.
+    metadata : name from the core specification ("Title", "Application", …) → text;
+    plain : leave out PrusaSlicer's config, and with it all settings.
 
-    Raises UsageError for a setting no slicer file may carry, ValueError for geometry or a part that
-    would make an invalid file.
+    Raises UsageError for a setting that no file for a slicer may carry, ValueError for geometry or
+    a part that would make the file invalid.
     """
     if not items:
         raise ValueError("a 3MF needs at least one item")
@@ -103,7 +102,7 @@ def write_3mf(
         parts[THUMBNAIL_PART] = thumbnail_png
     for name, content in sorted((attachments or {}).items()):
         if not _ATTACHMENT.fullmatch(name):
-            raise ValueError(f"{name!r} cannot be attached: Metadata/NAME.json or .txt is meant")
+            raise ValueError(f"{name!r} cannot be attached: use Metadata/NAME.json or NAME.txt")
         parts[name] = content
     return pack(parts)
 
@@ -137,14 +136,14 @@ def _check_settings(owner: str, settings: Mapping[str, str]) -> None:
     for key, value in settings.items():
         if key == "post_process":
             raise UsageError(
-                f"{owner!r} must not carry post_process: a slicer runs it as a command",
-                "put post-processing into the slicer's own print settings",
+                f"{owner!r} must not carry post_process: a slicer runs it as a command.",
+                "Put post-processing into the slicer's print settings.",
             )
-        # name and the volume's placement are keys of the same list, and written by this module
+        # name and the volume's placement are keys of the same list, and this module writes them.
         if not re.fullmatch(r"[a-z][a-z0-9_]*", key) or key in ("name", "volume_type", "matrix"):
-            raise UsageError(f"{owner!r}: {key!r} is not a setting of a slicer's object")
+            raise UsageError(f"{owner!r}: {key!r} is not a setting of an object in a slicer.")
         if clean(value) != value:
-            raise UsageError(f"{owner!r}: {key} holds characters that a 3MF cannot")
+            raise UsageError(f"{owner!r}: {key} has characters that a 3MF cannot hold.")
 
 
 def _model(items: Sequence[Item], metadata: Mapping[str, str]) -> bytes:

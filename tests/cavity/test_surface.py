@@ -16,7 +16,7 @@ from printprep.mesh.measure import arrays, distance_mm
 from printprep.types import Plane
 
 
-def room_in(manifold: Manifold, wall: float, feature: float = 1.0) -> Manifold:
+def hollowable_in(manifold: Manifold, wall: float, feature: float = 1.0) -> Manifold:
     depths = measure_depths(
         solids.solid(manifold), resolution=48, wall_mm=wall, min_feature_mm=feature
     )
@@ -29,17 +29,17 @@ def thinnest(outside: Manifold, cavity: Manifold) -> float:
     )
 
 
-def test_the_room_in_a_cube_is_the_inner_cube() -> None:
+def test_the_hollowable_volume_of_a_cube_is_the_inner_cube() -> None:
     cube = solids.box(40, 40, 40)
-    hollowable_volume = room_in(cube, 2.0)
+    hollowable_volume = hollowable_in(cube, 2.0)
     assert 0.99 * 36**3 < hollowable_volume.volume() < 36**3 * 1.0005
     assert thinnest(cube, hollowable_volume) >= 2.0 - 0.04
     assert np.allclose(hollowable_volume.bounding_box(), [-18, -18, 2, 18, 18, 38], atol=0.03)
 
 
-def test_the_room_in_a_ball_is_the_inner_ball() -> None:
+def test_the_hollowable_volume_of_a_ball_is_the_inner_ball() -> None:
     ball = solids.sphere(20)
-    hollowable_volume = room_in(ball, 2.0)
+    hollowable_volume = hollowable_in(ball, 2.0)
     assert hollowable_volume.volume() == pytest.approx(4 / 3 * np.pi * 18**3, rel=4e-3)
     assert thinnest(ball, hollowable_volume) >= 2.0 - 0.04
 
@@ -47,14 +47,14 @@ def test_the_room_in_a_ball_is_the_inner_ball() -> None:
 def test_reentrant_edges_keep_their_wall() -> None:
     # The groove's two edges point into the material: offset surfaces bulge toward chords there.
     block = solids.box(40, 40, 40) - solids.box(6, 60, 10).translate((0, 0, 30))
-    hollowable_volume = room_in(block, 1.2)
+    hollowable_volume = hollowable_in(block, 1.2)
     assert 1.2 - 0.04 <= thinnest(block, hollowable_volume) <= 1.2 + 0.03
 
 
 def test_walls_are_measured_from_voids_the_model_already_has() -> None:
     void = solids.box(8, 8, 8).translate((0, 0, 16))
     cube = solids.box(40, 40, 40) - void
-    hollowable_volume = room_in(cube, 2.0)
+    hollowable_volume = hollowable_in(cube, 2.0)
     assert thinnest(void, hollowable_volume) >= 2.0 - 0.04
     part = make_part(solids.solid(cube), None, cavities_of(hollowable_volume, 1.0))
     # Two shells of the outside and two of the cavity, which surrounds the old void.
@@ -71,7 +71,7 @@ def test_random_unions_keep_wall_and_manifold(seed: int) -> None:
         piece = solids.box(*rng.uniform(5, 18, 3)).rotate(tuple(rng.uniform(0, 90, 3)))
         solid = solid + piece.translate((*rng.uniform(-8, 8, 2), float(rng.uniform(0, 10))))
     solid = max(solid.decompose(), key=lambda piece: piece.volume())
-    hollowable_volume = room_in(solid, 1.2)
+    hollowable_volume = hollowable_in(solid, 1.2)
     if hollowable_volume.is_empty():
         return
     assert thinnest(solid, hollowable_volume) >= 1.2 - 0.04
@@ -106,7 +106,7 @@ def test_pieces_come_largest_first() -> None:
 
 def test_nothing_deep_enough_leaves_the_solid_as_it_is() -> None:
     plate = solids.box(40, 40, 2)
-    hollowable_volume = room_in(plate, 1.2)
+    hollowable_volume = hollowable_in(plate, 1.2)
     assert hollowable_volume.is_empty()
     part = make_part(solids.solid(plate), None, cavities_of(hollowable_volume, 1.2))
     assert part.cavities == ()

@@ -76,4 +76,4 @@ def test_export_into_a_missing_folder(capsys):
 
 def test_unknown_names_are_met_with_what_there_is(capsys):
     assert run(["profiles", "show", "fdm-pla"]) == 2
-    assert "did you mean fdm-pla-0." in capsys.readouterr().err
+    assert "Did you mean fdm-pla-0." in capsys.readouterr().err

@@ -9,11 +9,11 @@ from solids import box
 
 from printprep.drainage.balls import balls_in
 from printprep.drainage.channel import Channel, bored, frame
-from printprep.drainage.fill import filling
+from printprep.drainage.fill_undrained import filling
+from printprep.drainage.hole_candidates import balls_at_rest
 from printprep.drainage.plugs import TAPER_MM, plug
 from printprep.drainage.pools import RAISED_MM, SLOPE, Pools
-from printprep.drainage.search import balls_at_rest
-from printprep.drainage.space import Space, around, hollowed, open_air
+from printprep.drainage.voxelized_part import VoxelizedPart, open_air, voxelize, with_cavities
 from printprep.grid.distance import Surface
 from printprep.types import Drain
 
@@ -32,12 +32,12 @@ def test_open_air_knows_cups_by_their_layers():
 RADIUS = 1.75
 
 
-def w_shaped() -> tuple[Pools, Space, Manifold]:
+def w_shaped() -> tuple[Pools, VoxelizedPart, Manifold]:
     """Two basins 10 × 10, floors at 1 and 3 mm, under one room, joined over a sill at 6 mm."""
     void = box(10, 10, 11).translate((-7.5, 0, 1)) + box(10, 10, 9).translate((7.5, 0, 3))
     void += box(25, 10, 6).translate((0, 0, 6))
-    space = hollowed(around(box(29, 14, 14), 2 * RADIUS), void)
-    return Pools(balls_in(space, Surface.of(void), RADIUS), space.grid), space, void
+    voxelized = with_cavities(voxelize(box(29, 14, 14), 2 * RADIUS), void)
+    return Pools(balls_in(voxelized, Surface.of(void), RADIUS), voxelized.grid), voxelized, void
 
 
 def channel_at(x: float, floor_mm: float) -> Channel:
@@ -61,8 +61,8 @@ def test_bands_of_balls_leave_none_out_and_none_twice():
     """Balls rest on a bowl's floor at every height; a band holds those between its ends."""
     void = Manifold.sphere(12, 96).translate((0, 0, 14))
     outside = Manifold.sphere(14, 96).translate((0, 0, 14))
-    space = hollowed(around(outside, 2 * RADIUS), void)
-    pools = Pools(balls_in(space, Surface.of(void), RADIUS), space.grid)
+    voxelized = with_cavities(voxelize(outside, 2 * RADIUS), void)
+    pools = Pools(balls_in(voxelized, Surface.of(void), RADIUS), voxelized.grid)
     pool = np.arange(len(pools.dexels.column))
     lowest = pools.dexels.low_mm.min()
     low, high = (balls_at_rest(pools, pool, band)[:, 2] - lowest for band in ((0, 4), (4, 12)))
@@ -71,23 +71,23 @@ def test_bands_of_balls_leave_none_out_and_none_twice():
 
 
 def test_without_an_outlet_all_of_it_stays():
-    pools, space, void = w_shaped()
+    pools, voxelized, void = w_shaped()
     assert np.isinf(pools.levels([])).all()
-    left = void - filling(space, pools.tops_mm([]))
+    left = void - filling(voxelized, pools.tops_mm([]))
     assert left.volume() < 1e-3 * void.volume()
 
 
 def test_a_basin_holds_up_to_its_sill():
     pools, _, _ = w_shaped()
     levels = pools.levels(pools.outlets([LEFT]))
-    pool, volume = pools.largest(pools.standing_mm(levels), np.zeros(0, dtype=np.int64))
+    pool, volume = pools.largest(pools.liquid_depth_mm(levels), np.zeros(0, dtype=np.int64))
     # 3 mm deep to the sill, all of it by where balls are; the slope from the outlet on top
     right = pool[pools.dexels.low_mm[pool] > 3]
     assert pools.dexels.low_mm[right].min() == pytest.approx(3 + RADIUS, abs=0.02)
     assert levels[right].max() == pytest.approx(6 + RADIUS + 12 * SLOPE, abs=0.2)
     assert 250 < volume < 600
     both = pools.levels(pools.outlets([LEFT, RIGHT]))
-    assert float(pools.standing_mm(both).max()) < RAISED_MM + 25 * SLOPE
+    assert float(pools.liquid_depth_mm(both).max()) < RAISED_MM + 25 * SLOPE
 
 
 def test_an_outlet_above_the_floor_leaves_what_lies_below():
@@ -99,8 +99,8 @@ def test_an_outlet_above_the_floor_leaves_what_lies_below():
 
 
 def test_filling_takes_the_pool_and_leaves_the_rest():
-    pools, space, void = w_shaped()
-    left = void - filling(space, pools.tops_mm([LEFT]))
+    pools, voxelized, void = w_shaped()
+    left = void - filling(voxelized, pools.tops_mm([LEFT]))
     # Nothing is left under the sill on the far side; the near one keeps all but a sloping film
     assert (left ^ box(9, 10, 5.9).translate((8, 0, 0))).volume() < 0.5
     near = box(10, 10, 5).translate((-7.5, 0, 1))

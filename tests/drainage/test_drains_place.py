@@ -12,7 +12,7 @@ from manifold3d import Manifold
 from solids import box, cylinder
 
 from printprep.drainage.channel import bored
-from printprep.drainage.place import Drained, drained
+from printprep.drainage.drain_cavities import Drained, drain_cavities
 from printprep.drainage.trapped import suction_cups, trapped
 from printprep.profile_schema import DrainSettings as HoleCounts
 from printprep.types import Drain
@@ -22,7 +22,7 @@ DIAMETER = 3.5
 
 
 def drain(outside: Manifold, *cavities: Manifold, count: int = 2) -> tuple[Manifold, Drained]:
-    found = drained(
+    found = drain_cavities(
         outside,
         cavities,
         diameter_mm=DIAMETER,
@@ -144,7 +144,7 @@ def test_powder_gets_a_hole_for_every_so_much_that_a_cavity_holds(side, holes):
     """A cavity of 46.7 or 54.9 cm³ at a hole for every 25 cm³; the least count is 2."""
     counts = HoleCounts(diameter_mm=DIAMETER, count=2, cm3_per_hole=25.0)
     outside = box(side + 4, side + 4, side + 4)
-    found = drained(
+    found = drain_cavities(
         outside,
         [inner(side, side, side)],
         diameter_mm=DIAMETER,

@@ -9,10 +9,10 @@ from sl1_layers import shut_toward_plate
 from solids import box
 
 from printprep.drainage.channel import Channel, bored
-from printprep.drainage.place import drained
+from printprep.drainage.dexels import dexels_of, filled
+from printprep.drainage.drain_cavities import drain_cavities
 from printprep.drainage.pools import RAISED_MM
 from printprep.drainage.residual_pools import FALL, FILM_MM, residual_pools
-from printprep.drainage.space import dexels_of, filled
 from printprep.types import Grid
 
 PITCH = 0.35
@@ -102,7 +102,7 @@ def test_a_trough_that_falls_to_its_outlet_holds_nothing_shut(roll_deg, tilt_deg
     bar = Manifold.cube([40, 10, 10], True).rotate((roll_deg, 0, 0)).rotate((0, tilt_deg, 0))
     cavity = bar.translate((0, 0, 20))
     outside = box(60, 60, 40)
-    found = drained(
+    found = drain_cavities(
         outside,
         [cavity],
         diameter_mm=2 * RADIUS,

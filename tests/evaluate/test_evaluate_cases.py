@@ -38,14 +38,14 @@ def test_a_catalogue_without_sets_names_files_beside_it(tmp_path):
     "text, options, error, says",
     [
         ("file,up\na.obj,up\n", {}, UsageError, "names no axis"),
-        ("name\na.obj\n", {}, InputError, "line 2 names no file"),
-        ("file\n", {}, InputError, "names no model"),
+        ("name\na.obj\n", {}, InputError, "line 2 has no file"),
+        ("file\n", {}, InputError, "holds no model"),
         ("set,file\ndev,a.obj\n", {"subset": "test"}, InputError, "of the set test"),
         ("file\na.obj\n", {"only": ["b"]}, UsageError, "--only b"),
         ("file\na.obj\n", {"limit": 0}, UsageError, "--limit 0"),
     ],
 )
-def test_a_catalogue_that_cannot_be_meant(tmp_path, text, options, error, says):
+def test_an_invalid_catalogue(tmp_path, text, options, error, says):
     path = tmp_path / "list.csv"
     path.write_text(text)
     with pytest.raises(error, match=says):

@@ -135,7 +135,7 @@ def test_a_folder_that_cannot_be_is_an_output_error(models, tmp_path):
     (tmp_path / "taken").write_text("")
     with pytest.raises(OutputError, match="taken"):
         evaluate(data_set(models), QUICK[:1], tmp_path / "taken")
-    with pytest.raises(UsageError, match="--workers 0"):
+    with pytest.raises(UsageError, match="0 workers"):
         evaluate(data_set(models), QUICK[:1], tmp_path, workers=0)
 
 

@@ -40,7 +40,7 @@ def test_sub_cells_fill_their_cell() -> None:
 
 
 def test_block_around_nothing_is_refused() -> None:
-    with pytest.raises(ValueError, match="no cell"):
+    with pytest.raises(ValueError, match="at least one True cell"):
         block_around(np.zeros((2, 2, 2), dtype=bool), 1)
 
 

@@ -218,9 +218,9 @@ real = Path.replace
 def after(self, target):
     real(self, target)
     die()
-if point == "created": rewriting.os.fdopen = die
+if point == "created": os.fdopen = die
 if point == "half": rewriting.shutil.copyfileobj = half
-if point == "synced": rewriting.os.fsync = die
+if point == "synced": os.fsync = die
 if point == "ready": Path.replace = die
 if point == "replaced": Path.replace = after
 if other.name == "none":
@@ -257,7 +257,7 @@ def test_a_failed_write_leaves_nothing_behind(
         raise OSError(28, "No space left on device")
 
     before = gcode.read_bytes()
-    monkeypatch.setattr("printprep.hook.gcode_file.os.fsync", full)
+    monkeypatch.setattr("os.fsync", full)
     for write in (
         lambda: annotate(gcode, ["a = 1"]),
         lambda: replace_content(gcode, gcode, ["a = 1"]),

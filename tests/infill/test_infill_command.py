@@ -86,7 +86,7 @@ def test_without_a_slicer_it_is_an_estimate_and_says_so(
     hollow = json.loads(capsys.readouterr().out)
     assert other["mass_g"] == pytest.approx(hollow["mass_g"], rel=0.02)
     assert hollow["infill"] is None
-    assert hollow["other_way"] == {
+    assert hollow["alternative_fill"] == {
         "fill": "infill",
         "mass_g": pytest.approx(said["mass_g"], rel=0.02),
     }

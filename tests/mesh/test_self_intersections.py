@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from dev_rooms import room_of
+from dev_hollowable import hollowable_of
 from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
@@ -41,15 +41,15 @@ def test_a_ball_with_one_vertex_moved(place, through, beside):
 
 
 @given(st.floats(-6, 6), st.floats(-6, 6), st.floats(-15, 15))
-def test_what_is_folded_is_pierced(x, y, z):
+def test_a_folded_surface_intersects_itself(x, y, z):
     vertices, faces = ball_with_a_vertex_at((x, y, z))
     if folded(vertices, faces):
         assert len(self_intersections(vertices, faces).face) > 0
 
 
 @pytest.mark.corpus
-def test_a_room_does_not_fold_where_it_is_simplified(dev_models):
+def test_a_hollowable_volume_does_not_fold_where_it_is_simplified(dev_models):
     """The teapot's did, 0.008 mm deep, at the foot of its handle."""
     teapot = dev_models["teapot"]
-    _, room = room_of(teapot.path, teapot.up, 100.0, load_profile("fdm-pla-0.4"))
-    assert len(self_intersections(*arrays(room)).face) == 0
+    _, hollowable_volume = hollowable_of(teapot.path, teapot.up, 100.0, load_profile("fdm-pla-0.4"))
+    assert len(self_intersections(*arrays(hollowable_volume)).face) == 0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mesh_bodies import box, inside_out, joined, sphere
 
 from printprep.mesh.measure import winding
-from printprep.mesh.winding_columns import cross, winding_at
+from printprep.mesh.winding_columns import crossings_of, winding_at
 
 
 def scattered(low: float, high: float, count: int = 4000) -> np.ndarray:
@@ -17,7 +17,7 @@ def scattered(low: float, high: float, count: int = 4000) -> np.ndarray:
 
 
 def test_a_column_crosses_a_box_twice() -> None:
-    found = cross(*box((0, 0, 1), (2, 2, 4)), np.array([[0.3, 0.4], [5.0, 5.0], [1.7, 0.2]]))
+    found = crossings_of(*box((0, 0, 1), (2, 2, 4)), np.array([[0.3, 0.4], [5.0, 5.0], [1.7, 0.2]]))
     assert found.column.tolist() == [0, 0, 2, 2]
     assert found.z_mm.tolist() == [1, 4, 1, 4]
     assert found.sign.tolist() == [-1, 1, -1, 1]

@@ -7,8 +7,9 @@ import math
 import pytest
 
 from printprep.errors import UsageError
-from printprep.overhang.limits import Acceptance, acceptance, steepest_overhang_deg
+from printprep.overhang.limits import Acceptance, acceptance
 from printprep.profiles import load_profile
+from printprep.supports.member_sizes import MemberSizes
 
 
 @pytest.mark.parametrize(
@@ -25,15 +26,15 @@ def test_each_threshold_alone(layer_mm, off_mm, steepest_deg):
     assert rule.steepest_deg == pytest.approx(steepest_deg, abs=0.01)
 
 
-@pytest.mark.parametrize(("layer_mm", "deg"), [(0.2, 35.53), (0.3, 30.15)])
+@pytest.mark.parametrize(("layer_mm", "deg"), [(0.2, 35.78), (0.3, 30.40)])
 def test_the_stricter_threshold_decides(layer_mm, deg):
     profile = load_profile("fdm-pla-0.4", {"printer.layer_height_mm": layer_mm})
-    assert steepest_overhang_deg(profile) == pytest.approx(deg, abs=0.01)
+    assert acceptance(profile).steepest_deg == pytest.approx(deg, abs=0.01)
 
 
 def test_the_profile_caps_the_angle():
     profile = load_profile("fdm-pla-0.4", {"overhang_deg": 30.0})
-    assert steepest_overhang_deg(profile) == 30.0
+    assert MemberSizes.of(profile).theta_deg == 30.0
 
 
 def test_thinner_lines_reach_less_far():

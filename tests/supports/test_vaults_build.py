@@ -1,4 +1,4 @@
-"""Whole rooms vaulted: closed forms, properties, and spot judged by the real slicer."""
+"""Whole hollowable volumes, vaulted: closed forms, properties, and spot in the real slicer."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from dev_rooms import room_of
+from dev_hollowable import hollowable_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from manifold3d import Manifold
@@ -26,7 +26,7 @@ PROFILE = load_profile("fdm-pla-0.4")
 
 
 def holds(hollowable_volume: Manifold, vaults: Vaults) -> None:
-    """What must be true of any vaulted room."""
+    """What is true of any vaulted volume."""
     assert vaults.unsupported_mm2 == 0 and vaults.islands == 0
     assert (vaults.cavity - hollowable_volume).volume() == pytest.approx(
         0, abs=0.01 * hollowable_volume.surface_area() / 100
@@ -73,7 +73,7 @@ def test_a_box_with_a_flat_ceiling():
     assert section.offset(-acceptance(PROFILE).off_mm).is_empty()  # what is left is bridged
 
 
-def test_no_room_no_vaults():
+def test_nothing_hollowable_no_vaults():
     vaults = vaulted(Manifold(), PROFILE)
     assert vaults.cavity.is_empty() and vaults.added_mm3 == 0
 
@@ -111,7 +111,7 @@ def test_any_ellipsoid_is_carried(a, b, c, tilt, turn):
 @pytest.mark.usefixtures("prusa_slicer")
 def test_spot_prints_without_support_inside(dev_models):
     spot = dev_models["spot_low_resolution"]
-    solid, hollowable_volume = room_of(spot.path, spot.up, 50.0, PROFILE)
+    solid, hollowable_volume = hollowable_of(spot.path, spot.up, 50.0, PROFILE)
     vaults = vaulted(hollowable_volume, PROFILE)
     holds(hollowable_volume, vaults)
     assert vaults.added_mm3 / hollowable_volume.volume() < 0.12
@@ -125,7 +125,7 @@ def test_spot_prints_without_support_inside(dev_models):
 def test_a_hundred_capitals_leave_no_slivers_that_fold_over(dev_models):
     """Left as the kernel makes them, one went 0.14 mm through the surface beside it."""
     spot = dev_models["spot_low_resolution"]
-    solid, hollowable_volume = room_of(spot.path, spot.up, 100.0, PROFILE)
+    solid, hollowable_volume = hollowable_of(spot.path, spot.up, 100.0, PROFILE)
     part = quantized(solid - vaulted(hollowable_volume, PROFILE).cavity)
     vertices, faces = arrays(part)
     assert len(self_intersections(vertices, faces).face) == 0

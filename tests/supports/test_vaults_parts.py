@@ -15,17 +15,17 @@ from printprep.errors import UsageError
 from printprep.profiles import load_profile
 from printprep.supports.capitals import Capitals, cover
 from printprep.supports.ceiling import SPACING_MM, ceiling_samples
+from printprep.supports.column_feet import set_feet
+from printprep.supports.column_forest import Forest
 from printprep.supports.columns import raise_columns
-from printprep.supports.dexels import DEXEL_MM, Dexels
 from printprep.supports.distance_to_footing import DistanceToFooting
-from printprep.supports.feet import set_feet
-from printprep.supports.forest import Forest
 from printprep.supports.gussets import gussets
-from printprep.supports.members import Members
+from printprep.supports.inside_lookup import LOOKUP_MM, InsideLookup
+from printprep.supports.member_sizes import MemberSizes
 from printprep.supports.set_cover import OVERLAP_MM, REACH_MM, RISE_MM, SetCover
 from printprep.supports.solids import INTO_MM, SIDES, Frustum, columns, section, united
 
-MEMBERS = Members(theta_deg=35.5, lean_deg=38.0, thickness_mm=1.2, slenderness=12.0)
+MEMBERS = MemberSizes(theta_deg=35.5, lean_deg=38.0, thickness_mm=1.2, slenderness=12.0)
 
 
 def hollowable_volume() -> Manifold:
@@ -42,12 +42,12 @@ def inscribed_radius(polygon: np.ndarray) -> float:
 
 def built(void: Manifold) -> tuple[np.ndarray, Forest]:
     samples = ceiling_samples(void, 40.0)
-    dexels = Dexels.of(void, DEXEL_MM)
-    nodes = cover(samples, MEMBERS, SPACING_MM**2, dexels).node_mm
+    lookup = InsideLookup.of(void, LOOKUP_MM)
+    nodes = cover(samples, MEMBERS, SPACING_MM**2, lookup).node_mm
     forest = Forest()
-    landings = DistanceToFooting.of(dexels, MEMBERS, float(nodes[:, 2].max()))
-    raise_columns(nodes, dexels, landings, MEMBERS, forest)
-    set_feet(forest, dexels, MEMBERS)
+    footings = DistanceToFooting.of(lookup, MEMBERS, float(nodes[:, 2].max()))
+    raise_columns(nodes, lookup, footings, MEMBERS, forest)
+    set_feet(forest, lookup, MEMBERS)
     return nodes, forest
 
 
@@ -82,7 +82,7 @@ def carried(samples: np.ndarray, nodes: np.ndarray) -> np.ndarray:
 def test_capitals_carry_every_sample():
     ball = Manifold.sphere(10, 128)
     samples = ceiling_samples(ball, 40.0)
-    capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(ball, DEXEL_MM))
+    capitals = cover(samples, MEMBERS, SPACING_MM**2, InsideLookup.of(ball, LOOKUP_MM))
     assert carried(samples, capitals.node_mm).all()
 
 
@@ -95,7 +95,7 @@ def test_capitals_carry_every_sample_of_a_jagged_ceiling(seed):
     for height, along, across, phase in chance.uniform([4, 0.2, 0.2, 0], [9, 1.2, 1.2, 6], (3, 4)):
         z += height * np.sin(along * x + across * y + phase)
     samples = np.stack([x, y, z], axis=-1)[chance.random(x.shape) < 0.7]
-    below = Dexels.of(box(40, 40, 60).translate((0, 0, -30)), DEXEL_MM)
+    below = InsideLookup.of(box(40, 40, 60).translate((0, 0, -30)), LOOKUP_MM)
     assert carried(samples, cover(samples, MEMBERS, SPACING_MM**2, below).node_mm).all()
 
 
@@ -121,52 +121,53 @@ def test_a_wide_flat_ceiling_takes_few_funnels():
     """Discs cover a plane at best 1.21-fold (Kershner 1939); these need only carry a lattice."""
     hall = box(30, 30, 15)
     samples = ceiling_samples(hall, 40.0)
-    capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(hall, DEXEL_MM))
+    capitals = cover(samples, MEMBERS, SPACING_MM**2, InsideLookup.of(hall, LOOKUP_MM))
     rise = capitals.top_mm - capitals.node_mm[:, 2]
     discs = math.pi * (MEMBERS.radius_mm + rise * MEMBERS.tan - OVERLAP_MM) ** 2
     assert 900 < discs.sum() < 1.3 * 900
 
 
-def test_columns_of_a_lattice_know_the_room_at_every_height():
-    """Of a bubble in a ball: what each column says of points one by one, and nothing beyond."""
+def test_lines_of_a_lattice_know_the_inside_at_every_height():
+    """Of a bubble in a ball: the same as points one by one, and nothing beyond."""
     void = Manifold.sphere(6, 48) - Manifold.sphere(3, 48)
-    dexels, z = Dexels.of(void, 0.35), np.linspace(-8, 8, 40)
-    places = dexels.columns_mm().reshape(-1, 2)
+    lookup, z = InsideLookup.of(void, 0.35), np.linspace(-8, 8, 40)
+    x, y = (lookup.low_mm[k] + 0.35 * np.arange(n) for k, n in enumerate(lookup.shape))
+    places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     points = np.stack(np.broadcast_arrays(*places.T[..., None], z), axis=-1)
-    at = dexels.at_heights(z)
-    assert (at[:-1] == dexels.contains(points)).all()
+    at = lookup.at_heights(z)
+    assert (at[:-1] == lookup.contains(points)).all()
     assert at.any() and not at[-1].any()
-    assert (dexels.nearest(places) == np.arange(len(places))).all()
-    assert dexels.nearest(dexels.low_mm - [0.2, 0.0]) == -1
+    assert (lookup.nearest(places) == np.arange(len(places))).all()
+    assert lookup.nearest(lookup.low_mm - [0.2, 0.0]) == -1
 
 
 def test_in_the_middle_of_a_box_the_way_down_is_straight():
     """To the highest cell in the floor; in the shell and beyond there is none to go."""
-    landings = DistanceToFooting.of(Dexels.of(hollowable_volume(), 0.35), MEMBERS, 15.0)
-    cells = np.arange(landings.length_mm.shape[2])
-    z = landings.low_mm[2] + landings.cell_mm[2] * cells
-    way = landings.way_mm(np.column_stack([np.zeros((len(z), 2)), z]))
+    footings = DistanceToFooting.of(InsideLookup.of(hollowable_volume(), 0.35), MEMBERS, 15.0)
+    cells = np.arange(footings.length_mm.shape[2])
+    z = footings.low_mm[2] + footings.cell_mm[2] * cells
+    way = footings.way_mm(np.column_stack([np.zeros((len(z), 2)), z]))
     assert way == pytest.approx(np.where(z > 2, z - z[z < 2].max(), 0))
-    assert landings.way_mm(np.array([[4.0, 0.0, -5.0], [90.0, 0.0, -5.0]])).tolist() == [0, 0]
+    assert footings.way_mm(np.array([[4.0, 0.0, -5.0], [90.0, 0.0, -5.0]])).tolist() == [0, 0]
 
 
-def test_low_rooms_get_more_and_smaller_funnels():
+def test_low_cavities_get_more_and_smaller_funnels():
     """A column costs little there."""
     tops = []
     for height in (3.0, 30.0):
         hall = box(30, 30, height)
         samples = ceiling_samples(hall, 40.0)
-        capitals = cover(samples, MEMBERS, SPACING_MM**2, Dexels.of(hall, DEXEL_MM))
+        capitals = cover(samples, MEMBERS, SPACING_MM**2, InsideLookup.of(hall, LOOKUP_MM))
         tops.append(capitals.top_mm - capitals.node_mm[:, 2])
     assert len(tops[0]) > len(tops[1])
     assert tops[0].mean() < tops[1].mean()
 
 
-def test_headroom_is_what_is_below_in_the_room():
+def test_headroom_is_the_depth_below_inside():
     slab = box(4, 4, 1).translate((0, 0, 6))
-    dexels = Dexels.of(box(10, 10, 12).translate((0, 0, 2)) - slab, DEXEL_MM)
+    lookup = InsideLookup.of(box(10, 10, 12).translate((0, 0, 2)) - slab, LOOKUP_MM)
     points = np.array([[3.0, 3, 10], [0, 0, 10], [0, 0, 6.5], [0, 0, 5], [8, 0, 5], [0, 0, 20]])
-    assert dexels.headroom_mm(points) == pytest.approx([8, 3, 0, 3, 0, 0])
+    assert lookup.headroom_mm(points) == pytest.approx([8, 3, 0, 3, 0, 0])
 
 
 def capital(lean: float) -> tuple[Capitals, Forest]:
@@ -230,7 +231,7 @@ def test_a_column_sways_no_more_than_the_slenderest_thin_one(length):
 
 def test_the_slenderness_is_the_profile_s():
     thick, thin = (
-        Members.of(load_profile("fdm-pla-0.4", {"column_slenderness": s})) for s in (6, 24)
+        MemberSizes.of(load_profile("fdm-pla-0.4", {"column_slenderness": s})) for s in (6, 24)
     )
     length = np.array(20.0)
     assert thick.across_mm(length) == pytest.approx(0.6 * (20 / (6 * 1.2)) ** 0.75)

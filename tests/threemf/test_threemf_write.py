@@ -20,8 +20,8 @@ from printprep.errors import UsageError
 from printprep.render.thumbnail import thumbnail_png
 from printprep.slicer.process import find_slicer
 from printprep.threemf.read import read_3mf
-from printprep.threemf.text import clean, vertex_lines
 from printprep.threemf.write import Item, Volume, write_3mf
+from printprep.threemf.xml_text import clean, vertex_lines
 
 SETTINGS = {"fill_pattern": "rectilinear", "fill_density": "100%"}
 CUBE = Volume("cube", box((0, 0, 0), (20, 20, 20)), BOX_FACES)

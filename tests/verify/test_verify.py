@@ -281,7 +281,7 @@ def test_files_that_are_not_ours(block: Path, tmp_path: Path, figures: bytes | N
 def test_a_model_is_no_part(tmp_path: Path):
     with pytest.raises(InputError, match="is not a 3MF"):
         computed_part(write_model(tmp_path))
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="does not exist"):
         computed_part(tmp_path / "none.3mf")
 
 

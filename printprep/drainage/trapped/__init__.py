@@ -1,4 +1,4 @@
-"""What stays inside a part that should run out of it, and where it sucks while it prints."""
+"""Trapped liquid and powder, and suction cups: what should run out of a part and does not."""
 
 from printprep.drainage.trapped.cups import Cup, suction_cups
 from printprep.drainage.trapped.pockets import Pocket, trapped

@@ -1,7 +1,7 @@
-"""Suction cups: what is shut toward the plate while a part prints layer by layer, hanging from it.
+"""Suction cups: spaces without air while a part prints layer by layer, hanging from the plate.
 
 An empty region of layer i is a cup when no way leads from it to the outside through the layers up
-to i; the plate shuts what opens only to it.  Each peel of such a layer pulls against the vacuum in
+to i; the plate closes what opens only to it.  Each peel of such a layer pulls against the vacuum in
 the cup.  Air gets in through any passage that the grid resolves.
 """
 
@@ -18,19 +18,19 @@ from printprep.drainage.trapped.flood import basins
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-# Cells along the longest side, where nothing asks for more.
+# Cells along the longest side, unless a pitch is given.
 CELLS = 200
-# A dish this shallow has let the air in again after a few layers.
+# A shallower dish lets the air in again after a few layers.
 LEAST_DEEP_MM = 1.0
 
 
 @dataclass(frozen=True)
 class Cup:
-    """A space that stays shut toward the plate over some layers.
+    """A space that gets no air over some layers.
 
-    from_mm, to_mm : heights at which it begins and at which it opens, or is closed over for good.
-    opens : False where it never does: a sealed cavity.
-    area_mm2 : on which the peel acts, over a millimetre of height or more;
+    from_mm, to_mm : heights at which it begins and at which it opens or ends.
+    opens : False where it never opens: a sealed cavity.
+    area_mm2 : area on which the peel acts, over a millimetre of height or more;
     volume_mm3 : what it holds.
     place_mm : (x, y, z) in its lowest layer, away from its sides: where a vent helps.
     """
@@ -46,15 +46,15 @@ class Cup:
 def suction_cups(
     part: Manifold, *, pitch_mm: float | None = None, least_mm2: float = 10.0
 ) -> tuple[Cup, ...]:
-    """The cups of a part that prints from its lowest point upward, the widest first.
+    """Find the cups of a part that prints from its lowest point upward, the widest first.
 
     Parameters
     ----------
     part : in printing position, z upward from the plate.
-    pitch_mm : of the grid, a two-hundredth of the longest side without; walls and vents narrower
-        than it are not seen.
+    pitch_mm : of the grid, by default a two-hundredth of the longest side; the grid misses narrower
+        walls and vents.
     least_mm2 : cups that are narrower, or have this area over less than a millimetre of height,
-        are left out.
+        do not count.
     """
     if part.is_empty():
         return ()
@@ -81,7 +81,7 @@ def suction_cups(
         high = int(layers.max()) + 1 if spill < 0 else spill
         floor = pools[layers == low]
         i, j = np.nonzero(np.isin(found.pool[:, :, low], floor))
-        x, y = _inmost(i, j)
+        x, y = _innermost(i, j)
         floor_mm = origin[2] + (low - 0.5) * pitch
         cups.append(
             Cup(
@@ -100,8 +100,11 @@ def suction_cups(
     return tuple(sorted(cups, key=lambda cup: -cup.area_mm2))
 
 
-def _inmost(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
-    """The cell of a set (i, j) that lies farthest from all cells not in it."""
+def _innermost(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
+    """The cell of a set that lies farthest from all cells not in it.
+
+    i, j : (n,) indices of the set's cells.
+    """
     from scipy.ndimage import distance_transform_edt
 
     low = np.array([i.min(), j.min()])

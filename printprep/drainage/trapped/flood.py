@@ -1,12 +1,12 @@
-"""What stays where every way out rises: basins, by uniting layers from below.
+"""Basins: cells from which every way out rises, found by uniting layers from below.
 
 Notation: a pool is a connected piece of one layer of open cells; its layer is its height.  The
 spill of a pool is the least height, over all ways out, of the highest layer on the way.  A basin is
-a set of connected pools that lie below their spill and have it in common.
+a set of connected pools below a common spill.
 
-The same flood answers two questions.  Liquid in a standing part leaves sideways and down, so what
-lies below its spill stays.  A part that prints layer by layer is shut at layer i wherever no way
-out exists in the layers up to i, so a pool below its spill is a suction cup until then.
+The same flood answers two questions.  Liquid in a standing part leaves sideways and down, so liquid
+below its spill stays.  While a part prints, air reaches a pool at layer i only through the layers
+up to i, so a pool below its spill is a suction cup until then.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Basins:
     """Basins of open cells, layers along the last axis.
 
-    pool : int32 of the cells' shape, number of the pool, 0 where closed.
-    layer : (n + 1,) of each pool;  basin : (n + 1,) its basin, −1 where it drains.
+    pool : (nx, ny, nz) int32, number of the pool, 0 where closed.
+    layer : (n + 1,) layer of each pool;  basin : (n + 1,) its basin, −1 where it drains.
     spill : (b,) layer at which each basin runs over, −1 where it never does.
     """
 
@@ -41,11 +41,11 @@ class Basins:
 
 
 def basins(open_cells: Bool, outside: Bool, *, diagonal: bool) -> Basins:
-    """The basins of open cells.
+    """Find the basins of open cells.
 
     Parameters
     ----------
-    open_cells, outside : bool (nx, ny, nz), z upward; cells that are open and outside are out.
+    open_cells, outside : (nx, ny, nz) bool, z upward; open cells outside are out.
     diagonal : whether cells that share only an edge or a corner are connected.
     """
     from scipy.ndimage import generate_binary_structure, label
@@ -63,14 +63,17 @@ def basins(open_cells: Bool, outside: Bool, *, diagonal: bool) -> Basins:
 
 
 def _contacts(pool: Int32, diagonal: bool) -> Int:
-    """(k, 2) pools that touch, the lower one first."""
+    """(k, 2) pools that touch, the lower one first.
+
+    pool : (nx, ny, nz), number of each cell's pool.
+    """
     found = [np.zeros((0, 2), dtype=np.int64)]
     below, above = pool[:, :, :-1], pool[:, :, 1:]
     for i, j in product((-1, 0, 1), repeat=2) if diagonal else [(0, 0)]:
         low = below[_span(i, -1), _span(j, -1)]
         high = above[_span(i, 1), _span(j, 1)]
         telling = (low > 0) & (high > 0)
-        # What the neighbour along y says already is not said again.
+        # A contact that the neighbour along y shows already does not repeat.
         same = (low[:, 1:] == low[:, :-1]) & (high[:, 1:] == high[:, :-1])
         telling[:, 1:] &= ~(same & telling[:, :-1])
         pairs = np.stack([low[telling], high[telling]], axis=1).astype(np.int64)
@@ -79,14 +82,17 @@ def _contacts(pool: Int32, diagonal: bool) -> Int:
 
 
 def _span(step: int, side: int) -> slice:
-    """The cells of one axis that have a neighbour ``step`` away, or those neighbours."""
+    """The cells of one axis with a neighbour ``step`` away, or those neighbours."""
     if step == 0:
         return slice(None)
     return slice(1, None) if step * side > 0 else slice(None, -1)
 
 
 def _flood(layer: Int, free: Bool, contacts: Int) -> tuple[Int, Int]:
-    """Basin of every pool, and spill of every basin; pool 0 stands for the outside."""
+    """Basin (n + 1,) of every pool, and spill (b,) of every basin; pool 0 is the outside.
+
+    layer : (n + 1,);  free : (n + 1,) bool, pools that are out;  contacts : (k, 2).
+    """
     out = np.flatnonzero(free)
     pairs = np.concatenate([contacts, np.stack([np.zeros_like(out), out], axis=1)])
     height = layer[pairs[:, 1]]
@@ -98,7 +104,7 @@ def _flood(layer: Int, free: Bool, contacts: Int) -> tuple[Int, Int]:
     basin = np.full(len(layer), -1, dtype=np.int64)
     spill: list[int] = []
     for level, (start, stop) in enumerate(pairwise(ends.tolist())):
-        # What stood apart below this layer stays apart until it is known whether it is let out.
+        # Basins from below this layer stay apart until the layer lets them out or not.
         for head, sets in joined.all_of(pairs_up[start:stop]).items():
             if head:
                 held[head] = [pool for one in sets for pool in held[one]]
@@ -117,12 +123,13 @@ def _flood(layer: Int, free: Bool, contacts: Int) -> tuple[Int, Int]:
 
 
 class _Joined:
-    """Disjoint sets of numbers, each with a head; the set of 0 keeps 0 as its head."""
+    """Disjoint sets of numbers, each with a head; the head of 0's set is always 0."""
 
     def __init__(self, count: int) -> None:
         self._above = list(range(count))
 
     def head(self, one: int) -> int:
+        """The head of a number's set."""
         above = self._above
         while above[one] != one:
             above[one] = above[above[one]]
@@ -130,7 +137,7 @@ class _Joined:
         return one
 
     def all_of(self, pairs: list[list[int]]) -> dict[int, list[int]]:
-        """Join these pairs; every new set by its head, with the heads of those that became it."""
+        """Join pairs; returns each new set's head, with the heads of the sets it joins."""
         became: dict[int, list[int]] = {}
         for first, second in pairs:
             a, b = self.head(first), self.head(second)

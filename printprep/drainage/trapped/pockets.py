@@ -1,16 +1,16 @@
-"""The pour test: what a ball as wide as the drain cannot leave.
+"""The pour test: find what a ball as wide as the drain cannot leave.
 
 Notation: r the ball's radius, "out" beyond the part's bounding box.
 
-Cells that hold a place for the ball's centre are its room.  From every piece of that room that is
-not connected with the outside nothing runs out, however the part is turned: it is *sealed* where
-no passage at all leads out, and *narrow* where only passages below the ball's width do.  A space
-too small for the ball is judged by smaller ones: it is narrow where a ball of 0.6 r fits in and not
-even one of 0.36 r gets out.
+The test takes the cells where the ball's centre fits.  From every connected piece of them that does
+not reach the outside, nothing runs out, however the part is turned.  The piece is *sealed* where no
+passage leads out, and *narrow* where only passages below the ball's width do.  Smaller balls judge
+a space too small for the ball: it is narrow where a ball of 0.6 r fits in and not even a ball of
+0.36 r gets out.
 
-From what is connected, liquid in a part that stands runs out sideways and down.  Where each way
-out rises it stays as a *pool*, up to the lowest point of the passage over which it would spill,
-which lies r below the ball's centre; it runs out once the part is turned.
+From a piece that reaches the outside, liquid in a standing part runs out sideways and down.  Where
+every way out rises, it stays as a *pool*, up to the lowest point of the passage over which it
+spills, which lies r below the ball's centre.  A pool runs out once the part is turned.
 
 A pool lies in the open, as in a mug, unless it belongs to a space at least twice as wide as its
 widest passage out.
@@ -23,6 +23,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from printprep.drainage.trapped.cells import (
+    cells_of_each,
+    connected_pieces,
+    edge_cells,
+    spread_within,
+)
 from printprep.drainage.trapped.clearance import Clearance, space_around
 from printprep.drainage.trapped.flood import basins
 from printprep.grid.grid import block_around
@@ -39,30 +45,31 @@ if TYPE_CHECKING:
 
 Kind = Literal["sealed", "narrow", "pool"]
 
-# Cells along the ball's diameter, where the part is not too large for it.
+# Cells along the ball's diameter, unless the part is too large for that.
 CELLS_PER_BALL = 6.0
 MOST_CELLS = 16e6
-# Balls for spaces that the ball itself does not fit in, and that must get out of them, in r.
+# For spaces too small for the ball: a ball that must fit in, and a ball that must get out, in r.
 SMALL, SMALL_OUT = 0.6, 0.36
-# How exactly the widest way out is measured.
+# The precision of the widest way out.
 WAY_OUT_MM = 0.05
-# Ladder of balls by which enclosed spaces are told from open ones, and how much wider they are.
+# A ladder of balls tells enclosed spaces from open ones: the factor between two balls, and how much
+# wider than its way out an enclosed space is.
 LADDER, ENCLOSED = 1.5, 2.0
-# A pool must be this deep, in cells: less may be the grid's own stairs.
+# A pool is at least this deep, in cells: less may be the grid's own steps.
 LEAST_CELLS = 2.0
 
 
 @dataclass(frozen=True)
 class Pocket:
-    """Something that does not run out.
+    """A volume that does not run out.
 
     kind : "sealed" and "narrow" stay however the part is turned, a "pool" while it stands.
-    volume_mm3 : what stays;  place_mm : (x, y, z) the lowest place of it.
-    depth_mm : from that place to the highest that stays.
-    enclosed : it lies in a cavity; False in the open, as in a mug (pools only).
-    way_out_mm : of what stays for good, the diameter of the widest ball that gets out, to 0.05 mm
-        or half a cell; 0 where sealed, None for a pool.
-    cavity : index of the given cavity it lies in, None when in none.
+    volume_mm3 : what stays;  place_mm : (x, y, z) its lowest place.
+    depth_mm : from that place to its highest.
+    enclosed : True in a cavity; False in the open, as in a mug (pools only).
+    way_out_mm : diameter of the widest ball that gets out, to 0.05 mm or half a cell; 0 where
+        sealed, None for a pool.
+    cavity : index of the given cavity it lies in, None outside all of them.
     """
 
     kind: Kind
@@ -82,35 +89,35 @@ def trapped(
     pitch_mm: float | None = None,
     least_mm3: float | None = None,
 ) -> tuple[Pocket, ...]:
-    """What stays in a part, standing as it prints, that drains through holes of a diameter.
+    """Find the pockets of a part that drains through holes of a diameter, standing as it prints.
 
     Parameters
     ----------
     part : with its holes, z upward.
     diameter_mm : of the ball that must be able to leave.
-    cavities : the spaces hollowed out of it, without holes, to say which one a pocket lies in.
-    pitch_mm : of the grid; a sixth of the diameter without, or what 16 million cells allow.
-    least_mm3 : pockets smaller than this are left out; the ball's own volume without.
+    cavities : the part's cavities without holes, to tell which one a pocket lies in.
+    pitch_mm : of the grid; by default a sixth of the diameter, or what 16 million cells allow.
+    least_mm3 : smaller pockets do not count; by default the ball's own volume.
 
     Returns
     -------
-    What stays for good first, then pools; the largest of each first.
+    Sealed and narrow pockets, then pools; the largest of each first.
     """
     if part.is_empty():
         return ()
     least = np.pi / 6 * diameter_mm**3 if least_mm3 is None else least_mm3
-    space = pour_space(part, diameter_mm, pitch_mm)
+    space = _pour_clearance(part, diameter_mm, pitch_mm)
     if space.empty.all():  # thinner than a cell everywhere
         return ()
-    room = space.room_for(diameter_mm / 2)
-    found = [*_shut(space, room, diameter_mm / 2), *_pools(space, room, diameter_mm / 2, least)]
+    fits = space.ball_fits(diameter_mm / 2)
+    found = [*_closed(space, fits, diameter_mm / 2), *_pools(space, fits, diameter_mm / 2, least)]
     pockets = [_placed(pocket, space, cavities) for pocket in found]
     kept = [pocket for pocket in pockets if pocket.volume_mm3 >= least]
     return tuple(sorted(kept, key=lambda item: (item.kind == "pool", -item.volume_mm3)))
 
 
-def pour_space(part: Manifold, diameter_mm: float, pitch_mm: float | None = None) -> Clearance:
-    """The grid on which a ball of a diameter is followed, with room for it all around."""
+def _pour_clearance(part: Manifold, diameter_mm: float, pitch_mm: float | None = None) -> Clearance:
+    """The clearance on which a ball of a diameter is followed, with space for it all around."""
     if pitch_mm is None:
         low, high = np.reshape(part.bounding_box(), (2, 3))
         volume = float(np.prod(high - low + 2 * diameter_mm))
@@ -121,7 +128,7 @@ def pour_space(part: Manifold, diameter_mm: float, pitch_mm: float | None = None
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """Cells of a pocket, flat indices, with what is known of it."""
+    """The cells of a pocket: (n,) flat indices, and its figures."""
 
     kind: Kind
     cells: Int
@@ -129,37 +136,43 @@ class _Found:
     way_out_mm: float | None
 
 
-def _shut(space: Clearance, fits: Bool, radius_mm: float) -> list[_Found]:
-    """What no ball leaves, whichever way the part is turned."""
-    empty, outside = _pieces(space.empty, diagonal=False)
-    room, free = _pieces(fits, diagonal=True)
-    small, small_free = _pieces(space.clearance_mm >= SMALL * radius_mm, diagonal=True)
-    way, way_free = _pieces(
+def _closed(space: Clearance, fits: Bool, radius_mm: float) -> list[_Found]:
+    """Pockets that the ball cannot leave, whichever way the part is turned.
+
+    fits : (nx, ny, nz) bool, cells where the ball's centre fits.
+    """
+    empty, outside = connected_pieces(space.empty, diagonal=False)
+    large, large_free = connected_pieces(fits, diagonal=True)
+    small, small_free = connected_pieces(space.clearance_mm >= SMALL * radius_mm, diagonal=True)
+    way, way_free = connected_pieces(
         space.clearance_mm >= SMALL_OUT * radius_mm - space.grid.pitch_mm / 2, diagonal=True
     )
-    shut = (room > 0) & (room != free)
+    closed = (large > 0) & (large != large_free)
     # Smaller spaces, where the ball is nowhere near.
-    shut |= (small > 0) & (small != small_free) & (way != way_free)
+    closed |= (small > 0) & (small != small_free) & (way != way_free)
     sealed = space.empty & (empty != outside)
-    if not (shut.any() or sealed.any()):
+    if not (closed.any() or sealed.any()):
         return []
     from scipy.ndimage import label
 
-    seeds, count = label(shut | sealed, structure=np.ones((3, 3, 3)))
-    seeds[room == free] = count + 1
-    owner = _nearest_within(space.empty, seeds)
+    seeds, count = label(closed | sealed, structure=np.ones((3, 3, 3)))
+    seeds[large == large_free] = count + 1
+    owner = spread_within(space.empty, seeds)
     found = []
-    for _, cells in _members(owner, count):
+    for _, cells in cells_of_each(owner, count):
         if sealed.flat[cells].all():
             found.append(_Found("sealed", cells, True, 0.0))
         else:
-            way_out = _way_out_mm(space, cells, room == free, radius_mm)
+            way_out = _way_out_mm(space, cells, large == large_free, radius_mm)
             found.append(_Found("narrow", cells, True, way_out))
     return found
 
 
 def _way_out_mm(space: Clearance, cells: Int, free: Bool, radius_mm: float) -> float:
-    """Diameter of the widest ball that gets from these cells to where the ball itself is free."""
+    """Diameter of the widest ball that gets from a pocket to where the ball itself is free.
+
+    cells : (n,) flat, of the pocket;  free : (nx, ny, nz) bool, where the ball itself gets out.
+    """
     mine = np.zeros(free.shape, dtype=bool)
     mine.flat[cells] = True
     margin = int(np.ceil(2 * radius_mm / space.grid.pitch_mm)) + 4
@@ -168,7 +181,7 @@ def _way_out_mm(space: Clearance, cells: Int, free: Bool, radius_mm: float) -> f
     passes, stays = 0.0, radius_mm
     while stays - passes > WAY_OUT_MM / 2:
         middle = (passes + stays) / 2
-        pieces, _ = _pieces(near.room_for(middle) | out, diagonal=True)
+        pieces, _ = connected_pieces(near.ball_fits(middle) | out, diagonal=True)
         if len(np.intersect1d(pieces[inside & (pieces > 0)], pieces[out])):
             passes = middle
         else:
@@ -176,10 +189,13 @@ def _way_out_mm(space: Clearance, cells: Int, free: Bool, radius_mm: float) -> f
     return 2 * passes
 
 
-def _pools(space: Clearance, room: Bool, radius_mm: float, least_mm3: float) -> list[_Found]:
-    """What stays in a standing part although there is a way out."""
+def _pools(space: Clearance, fits: Bool, radius_mm: float, least_mm3: float) -> list[_Found]:
+    """Pools: what stays in a standing part although a way leads out.
+
+    fits : (nx, ny, nz) bool, cells where the ball's centre fits.
+    """
     pitch = space.grid.pitch_mm
-    flood = basins(room, _edge(room.shape), diagonal=True)
+    flood = basins(fits, edge_cells(fits.shape), diagonal=True)
     deep = [
         number
         for number, spill in enumerate(flood.spill.tolist())
@@ -190,115 +206,53 @@ def _pools(space: Clearance, room: Bool, radius_mm: float, least_mm3: float) -> 
     renumbered = np.full(len(flood.spill) + 1, 0, dtype=np.int32)
     renumbered[deep] = np.arange(1, len(deep) + 1)
     seeds = renumbered[flood.basin][flood.pool]
-    seeds[room & (seeds == 0)] = len(deep) + 1
-    owner = _nearest_within(space.empty, seeds)
-    rooms = None
+    seeds[fits & (seeds == 0)] = len(deep) + 1
+    owner = spread_within(space.empty, seeds)
+    enclosed = None
     found = []
-    for number, cells in _members(owner, len(deep)):
+    for number, cells in cells_of_each(owner, len(deep)):
         # The liquid's surface lies at the lowest point of the passage.
         surface = flood.spill[deep[number - 1]] - radius_mm / pitch
-        wet = cells[cells % room.shape[2] < surface]
+        wet = cells[cells % fits.shape[2] < surface]
         if len(wet) * pitch**3 < least_mm3:
             continue
-        if rooms is None:
-            rooms = _enclosed(space, room, radius_mm)
-        centres = cells[room.flat[cells]]
-        found.append(_Found("pool", wet, _mostly(rooms.flat[centres]), None))
+        if enclosed is None:
+            enclosed = _enclosed(space, fits, radius_mm)
+        centres = cells[fits.flat[cells]]
+        found.append(_Found("pool", wet, _mostly(enclosed.flat[centres]), None))
     return found
 
 
-def _enclosed(space: Clearance, room: Bool, radius_mm: float) -> Bool:
-    """Cells of the ball's room that belong to spaces wider than their ways out."""
+def _enclosed(space: Clearance, fits: Bool, radius_mm: float) -> Bool:
+    """(nx, ny, nz) bool, cells that belong to spaces wider than their ways out.
+
+    fits : (nx, ny, nz) bool, cells where the ball's centre fits.
+    """
     widest, radius = float(space.clearance_mm.max()), LADDER * radius_mm
-    seeds, edge = np.zeros(room.shape, dtype=np.int32), _edge(room.shape)
+    seeds, edge = np.zeros(fits.shape, dtype=np.int32), edge_cells(fits.shape)
     while ENCLOSED * radius <= widest:
-        # Beyond the edge there is all the room in the world.
-        pieces, free = _pieces((space.clearance_mm >= radius) | edge, diagonal=True)
+        # Beyond the edge the space has no limit.
+        pieces, free = connected_pieces((space.clearance_mm >= radius) | edge, diagonal=True)
         count = int(pieces.max())
         largest = np.zeros(count + 1, dtype=np.float32)
         inside = pieces > 0
         np.maximum.at(largest, pieces[inside], space.clearance_mm[inside])
-        roomy = largest >= ENCLOSED * radius
-        roomy[free] = False
-        if roomy.any():
+        wide = largest >= ENCLOSED * radius
+        wide[free] = False
+        if wide.any():
             seeds[pieces == free] = 2
-            seeds[roomy[pieces]] = 1
+            seeds[wide[pieces]] = 1
         radius *= LADDER
-    return np.asarray(_nearest_within(room, seeds) == 1)
-
-
-def _edge(shape: tuple[int, ...]) -> Bool:
-    """The cells at the edge of a grid."""
-    edge = np.ones(shape, dtype=bool)
-    edge[1:-1, 1:-1, 1:-1] = False
-    return edge
-
-
-def _pieces(cells: Bool, *, diagonal: bool) -> tuple[Int32, int]:
-    """Connected pieces, and the number of the one that is outside."""
-    from scipy.ndimage import generate_binary_structure, label
-
-    pieces, _ = label(cells, structure=generate_binary_structure(3, 3 if diagonal else 1))
-    return pieces, int(pieces[0, 0, 0])
-
-
-def _nearest_within(cells: Bool, seeds: Int32) -> Int32:
-    """Every cell that a seed reaches within ``cells``, with the number of the first to do so."""
-    owner = np.where(cells, seeds, 0).ravel()
-    allowed = cells.ravel()
-    nx, ny, nz = cells.shape
-    steps = (ny * nz, -ny * nz, nz, -nz, 1, -1)
-    front = _rim(owner.reshape(cells.shape), cells)
-    while len(front):
-        reached = []
-        for axis, step in enumerate(steps):
-            there = front + step
-            inside = _same_line(front, there, axis // 2, (nx, ny, nz))
-            source, target = front[inside], there[inside]
-            fresh = allowed[target] & (owner[target] == 0)
-            owner[target[fresh]] = owner[source[fresh]]
-            reached.append(target[fresh])
-        front = np.unique(np.concatenate(reached))
-    return owner.reshape(cells.shape)
-
-
-def _rim(owner: Int32, cells: Bool) -> Int:
-    """Owned cells with a neighbour that is allowed and not owned."""
-    waiting = cells & (owner == 0)
-    beside = np.zeros(cells.shape, dtype=bool)
-    for axis in range(3):
-        first = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
-        last = tuple(slice(None, -1) if a == axis else slice(None) for a in range(3))
-        beside[first] |= waiting[last]
-        beside[last] |= waiting[first]
-    return np.flatnonzero(beside & (owner > 0))
-
-
-def _same_line(here: Int, there: Int, axis: int, shape: tuple[int, int, int]) -> Bool:
-    """Which steps along an axis of a flat index stay within the grid."""
-    _, ny, nz = shape
-    inside: Bool = (there >= 0) & (there < shape[0] * ny * nz)
-    if axis == 1:
-        inside &= here // (ny * nz) == there // (ny * nz)
-    elif axis == 2:
-        inside &= here // nz == there // nz
-    return inside
-
-
-def _members(owner: Int32, count: int) -> list[tuple[int, Int]]:
-    """The cells of every number from 1 to ``count`` that has any."""
-    flat = owner.ravel()
-    mine = np.flatnonzero((flat > 0) & (flat <= count))
-    order = np.argsort(flat[mine], kind="stable")
-    numbers, starts = np.unique(flat[mine][order], return_index=True)
-    return list(zip(numbers.tolist(), np.split(mine[order], starts[1:]), strict=True))
+    return np.asarray(spread_within(fits, seeds) == 1)
 
 
 def _mostly(flags: Bool) -> bool:
+    """Whether more than half of the flags (n,) are set."""
     return bool(2 * np.count_nonzero(flags) > len(flags))
 
 
 def _placed(found: _Found, space: Clearance, cavities: Sequence[Manifold]) -> Pocket:
+    """Measure a pocket, and find the cavity it lies in."""
     grid = space.grid
     index = np.stack(np.unravel_index(found.cells, grid.shape), axis=1)
     low, high = int(index[:, 2].min()), int(index[:, 2].max())
@@ -319,6 +273,7 @@ def _placed(found: _Found, space: Clearance, cavities: Sequence[Manifold]) -> Po
 
 
 def _cavity_at(place: np.ndarray, cavities: Sequence[Manifold]) -> int | None:
+    """Index of the cavity that holds a place (3,) mm, or None."""
     from printprep.grid.distance import Surface
 
     for number, cavity in enumerate(cavities):

@@ -1,4 +1,4 @@
-"""What lies inside given cavities: the axes of printed beads against the cavities' surfaces."""
+"""Finds the beads that are printed inside cavities, which should stay empty."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
 from printprep.mesh.measure import arrays, distance_to_mesh_mm, winding
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class Cavities:
     def share_inside(self, start: Float, end: Float, deeper_mm: Float) -> Float:
         """(n,) share of each stretch whose axis lies deeper than ``deeper_mm`` in a cavity.
 
-        start, end : (n, 3) mm;  deeper_mm : (n,).  Sampled every half a millimetre.
+        start, end : (n, 3) mm;  deeper_mm : (n,).  Sampled every 0.5 mm.
         """
         share = np.zeros(len(start))
         low, high = np.minimum(start, end), np.maximum(start, end)
@@ -38,11 +39,10 @@ class Cavities:
             near = np.flatnonzero(((high > bottom) & (low < top)).all(axis=1))
             length = np.linalg.norm(end[near] - start[near], axis=1)
             samples = np.clip(np.ceil(length / _STEP_MM), 1, _SAMPLES_MAX).astype(np.int64)
-            # So few at a time that memory stays bounded whatever the file says
+            # In parts, so that memory stays bounded for any file.
             parts = np.flatnonzero(np.diff(np.cumsum(samples) // _POINTS_MAX, prepend=0))
             for some, counts in zip(np.split(near, parts), np.split(samples, parts), strict=True):
-                owner = np.repeat(np.arange(len(some)), counts)
-                step = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+                owner, step = runs(counts)
                 at = ((step + 0.5) / counts[owner])[:, None]
                 points = start[some][owner] * (1 - at) + end[some][owner] * at
                 within = _deeper(points, deeper_mm[some][owner], vertices, faces, bottom, top)
@@ -53,6 +53,10 @@ class Cavities:
 def _deeper(
     points: Float, deeper: Float, vertices: Float, faces: Int, bottom: Float, top: Float
 ) -> Bool:
+    """(k,) whether points (k, 3) lie deeper than ``deeper`` (k,) mm in a mesh.
+
+    vertices : (n, 3) mm;  faces : (m, 3);  bottom, top : (3,) mm, corners of its bounding box.
+    """
     margin = deeper[:, None]
     boxed = ((points > bottom + margin) & (points < top - margin)).all(axis=1)
     at = np.flatnonzero(boxed)

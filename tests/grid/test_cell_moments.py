@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
+from printprep.grid.cell_moments import moments_in_cells
 from printprep.grid.grid import grid_over
-from printprep.grid.weigh import moments_in_cells
 from printprep.mesh.measure import mass_properties
 
 

@@ -1,4 +1,4 @@
-"""Exact measures of one channel: that it comes out whole, once, and breaks out nowhere else."""
+"""Measure one channel exactly: its whole rim comes out, once, and breaks out nowhere else."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.drainage.channel import Channel, frame
-from printprep.drainage.search import LEAST_COSINE, LONGEST_MM
+from printprep.drainage.hole_candidates import LEAST_COSINE, LONGEST_MM
 
 if TYPE_CHECKING:
-    from printprep.drainage.search import Candidate
+    from printprep.drainage.hole_candidates import Candidate
     from printprep.grid.distance import Surface
 
 LINES = 24
 STEP_MM = 0.1
-# The drill goes on past the last of its rim by this much, through air.
+# The drill goes so far through air beyond the last point of its rim.
 BEYOND_MM = 0.3
 CLEAR_MM = 1.0
 
 
-def channel_along(
+def exact_channel(
     candidate: Candidate,
     outside: Surface,
     void: Surface,
@@ -28,9 +28,9 @@ def channel_along(
     wall_mm: float,
     clearance_mm: float,
 ) -> Channel | None:
-    """The channel along a candidate, None where it is not clean.
+    """Build the channel along a candidate; None where it is not clean.
 
-    outside : the part's, without its cavities;  void : the cavities'.
+    outside : surface of the part without its cavities;  void : surface of the cavities.
     """
     radius = diameter_mm / 2
     across = frame(candidate.axis)[:, :2]

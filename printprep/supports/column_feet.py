@@ -1,4 +1,4 @@
-"""Feet: straight columns from a place down to where their whole rim is in the shell."""
+"""Find the feet of columns: where a straight column's whole rim enters the shell."""
 
 from __future__ import annotations
 
@@ -9,33 +9,34 @@ import numpy as np
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float
-    from printprep.supports.dexels import Dexels
-    from printprep.supports.forest import Forest
-    from printprep.supports.members import Members
+    from printprep.supports.column_forest import Forest
+    from printprep.supports.inside_lookup import InsideLookup
+    from printprep.supports.member_sizes import MemberSizes
 
 STEP_MM = 0.25
-# So far beyond the first depth found: what the lattice of dexels may misjudge.
+# A foot goes so far beyond the first depth found: the lookup's lattice may be off by so much.
 BEYOND_MM = 0.5
 _RIM = 12
-# Directions tried: (share of the steepest lean's tangent, how many around).
+# Directions to try: (share of the largest lean's tangent, how many around).
 _FANS = ((0.0, 1), (0.5, 6), (1.0, 16))
-# Falls looked at together.
+# Falls tried together.
 _CHUNK = 12
 
 
 def ring(count: int) -> Float:
     """(count, 3) corners of a regular polygon in the horizontal circle of radius 1."""
+
     turn = 2 * np.pi * np.arange(count) / count
     return np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1)
 
 
 def disc() -> Float:
-    """(m, 3) offsets over the horizontal disc of radius 1: middle, half way out, and rim."""
+    """(m, 3) offsets over the horizontal disc of radius 1: middle, half radius, and rim."""
     return np.concatenate([np.zeros((1, 3)), ring(_RIM // 2) / 2, ring(_RIM)])
 
 
 def directions(tan: float) -> Float:
-    """(k, 3) ways down, by their offset per mm of fall."""
+    """(k, 3) directions down, as offsets per mm of fall, up to a lean of tangent ``tan``."""
     fans = []
     for share, count in _FANS:
         turn = 2 * math.pi * np.arange(count) / count
@@ -45,12 +46,13 @@ def directions(tan: float) -> Float:
 
 
 def nearest_feet(
-    places: Float, above_mm: Float, dexels: Dexels, members: Members, deepest_mm: float
+    places: Float, above_mm: Float, lookup: InsideLookup, members: MemberSizes, deepest_mm: float
 ) -> tuple[Float, Float]:
-    """Where straight columns from places (n, 3) would stand soonest.
+    """Find the nearest feet of straight columns from places (n, 3) mm.
 
-    Returns (n,) their lengths, inf where none stands within a fall of
-    ``deepest_mm``, and (n, 3) the middles of their feet.
+    above_mm : (n,) mm, longest way up from each place to a tip.
+    Returns (n,) mm, the columns' lengths, inf where none stands within a fall of ``deepest_mm``,
+    and (n, 3) mm, the middles of their feet.
     """
     ways = directions(members.lean_tan)
     lean = np.linalg.norm(ways, axis=1)
@@ -62,7 +64,7 @@ def nearest_feet(
         falls: Float = start + STEP_MM * np.arange(_CHUNK, dtype=np.float64)
         middle = places[open_, None, None] + falls[None, None, :, None] * ways[None, :, None]
         above = np.broadcast_to(above_mm[open_, None, None], middle.shape[:3])
-        held = _held(middle, above, falls[None, None, :], lean[None, :, None], dexels, members)
+        held = _held(middle, above, falls[None, None, :], lean[None, :, None], lookup, members)
         cost = np.where(held, np.inf, falls[None, None, :] * lean[None, :, None])
         flat = cost.reshape(len(open_), -1)
         best = flat.argmin(axis=1)
@@ -73,10 +75,10 @@ def nearest_feet(
     return price, foot
 
 
-def set_feet(forest: Forest, dexels: Dexels, members: Members) -> None:
+def set_feet(forest: Forest, lookup: InsideLookup, members: MemberSizes) -> None:
     """Move the end of every standing column along its line to where its rim is in the shell.
 
-    It is as thick there as what it carries by now asks for.
+    Its thickness there follows from the load it carries now.
     """
     if not forest.stands:
         return
@@ -90,7 +92,7 @@ def set_feet(forest: Forest, dexels: Dexels, members: Members) -> None:
     going = np.arange(len(start))
     while len(going):
         middle = start[going] + fall[going, None] * way[going]
-        held = _held(middle, above[going], fall[going], lean[going], dexels, members)
+        held = _held(middle, above[going], fall[going], lean[going], lookup, members)
         going = going[held]
         fall[going] += STEP_MM
     ends = start + (fall[:, None] + BEYOND_MM) * way
@@ -99,13 +101,22 @@ def set_feet(forest: Forest, dexels: Dexels, members: Members) -> None:
 
 
 def _held(
-    middle: Float, above_mm: Float, fall_mm: Float, lean: Float, dexels: Dexels, members: Members
+    middle: Float,
+    above_mm: Float,
+    fall_mm: Float,
+    lean: Float,
+    lookup: InsideLookup,
+    members: MemberSizes,
 ) -> Bool:
-    """Whether some of a column's section still lies in the room; arrays of one leading shape."""
-    radius = members.across_mm(above_mm + fall_mm * lean) * lean + dexels.step_mm / 2
-    held = dexels.contains(middle)
-    # Most sections are decided by their middles.
+    """(…,) whether part of a column's section still lies in the hollowable volume.
+
+    middle : (…, 3) mm, of the section;  above_mm : (…,) mm, longest way up from the column's upper
+    end;  fall_mm : (…,) mm, from there down;  lean : (…,) length per mm of fall.
+    """
+    radius = members.across_mm(above_mm + fall_mm * lean) * lean + lookup.step_mm / 2
+    held = lookup.contains(middle)
+    # The middle alone decides most sections.
     rest = ~held
     points = middle[rest][:, None, :] + radius[rest][:, None, None] * disc()[1:]
-    held[rest] = dexels.contains(points).any(axis=-1)
+    held[rest] = lookup.contains(points).any(axis=-1)
     return held

@@ -1,4 +1,4 @@
-"""Text of XML parts: escaping that cannot be got wrong, and numbers by the hundred thousand.
+"""Writes the text of XML parts: escaped strings, and lines of vertices and triangles.
 
 Source: XML 1.0 (fifth edition) sections 2.2 and 3.3.3; 3MF core specification 1.3, ST_Number.
 """
@@ -13,7 +13,8 @@ import numpy as np
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
-# Everything outside the Char production; tab and line ends too, which attributes turn to spaces.
+# All characters outside the Char production; also tab and line ends, which become spaces in
+# attributes.
 _FORBIDDEN = re.compile("[^\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&apos;"})
 
@@ -24,15 +25,15 @@ def clean(text: str) -> str:
 
 
 def escape(text: str) -> str:
-    """`text` as it may stand in an attribute or an element."""
+    """`text` as it can stand in an attribute or an element."""
     return clean(text).translate(_ESCAPES)
 
 
 def vertex_lines(vertices_mm: Float) -> bytes:
-    """One <vertex/> a line for (n, 3) coordinates: the shortest text of each value's float32.
+    """One <vertex/> a line for vertices (n, 3): the shortest text of each value's float32.
 
-    Slicers keep float32, so nothing is lost that a slicer would have kept, and reading the text
-    back as float32 gives the same bits.
+    Slicers keep float32, so this loses nothing that a slicer keeps, and the text reads back as the
+    same float32.
     """
     values = vertices_mm.astype(np.float32).ravel() + np.float32(0.0)  # −0 becomes 0
     texts = [text.removesuffix(b".0") for text in values.astype("S").tolist()]
@@ -40,6 +41,6 @@ def vertex_lines(vertices_mm: Float) -> bytes:
 
 
 def triangle_lines(faces: Int, first_vertex: int) -> bytes:
-    """One <triangle/> a line for (m, 3) indices, counted on from `first_vertex`."""
+    """One <triangle/> a line for faces (m, 3), with `first_vertex` added to each index."""
     indices = tuple((faces + first_vertex).ravel().tolist())
     return b'     <triangle v1="%d" v2="%d" v3="%d"/>\n' * len(faces) % indices

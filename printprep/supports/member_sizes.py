@@ -1,14 +1,14 @@
-"""What vaults are built of: how steep, how thick, how slender; and the volume of a column.
+"""How steep, how thick and how slender vaults are, and the volume of their columns.
 
 Notation: θ steepest overhang from the vertical, m least thickness across an axis, ℓ length of the
 longest way up from a place to a tip, φ lean of a column, S slenderness.
 
-A column is round across its axis, t(ℓ) thick.  Cut level it reaches t(ℓ) / (2 cos φ) toward its
-lean.
+A column is round across its axis, t(ℓ) thick.  Its level section reaches t(ℓ) / (2 cos φ) toward
+its lean.
 
-Until its tip reaches the ceiling a column is a cantilever that the nozzle drags at with a force
-that does not depend on it.  Its end gives way by ℓ³ / t⁴ times a constant, so the thickness that
-keeps it as stiff as one of thickness m and length S m is
+Until its tip reaches the ceiling, a column is a cantilever.  The nozzle drags at it with a force
+that does not depend on it.  Its end yields by ℓ³ / t⁴ times a constant, so the thickness that keeps
+it as stiff as a column of thickness m and length S m is
 
     t(ℓ) = m max(1, ℓ / (S m))^(3/4).
 """
@@ -27,26 +27,26 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.profiles import Profile
 
-# Slicers thin out their outlines, PrusaSlicer by its resolution; so much less reach is built for.
-# (Without it 0.46 g of support were printed in a cow's cavity that the rule itself accepted.)
+# Slicers thin out their outlines, PrusaSlicer by its resolution: vaults rely on so much less reach.
+# (Without this, a cow's cavity that the rule itself accepts got 0.46 g of support.)
 RESOLUTION_MM = 0.0125
-# Below a joint a column narrows to its own section, a fifth of its radius over 2 mm or more
-# (solids.py), and there leans out so much farther than its axis does.
+# Below a joint a column narrows to its own section, by a fifth of its radius over 2 mm or more
+# (solids.py), so its side leans so much farther than its axis.
 JOINT_TAN = 0.06
 
 
 def built_for(profile: Profile) -> Acceptance:
-    """The slicer's rule with the reserve.  Raises UsageError where there is no nozzle."""
+    """The slicer's rule with the reserve.  Raises UsageError for a profile without a nozzle."""
     rule = acceptance(profile)
     return replace(rule, off_mm=rule.off_mm - RESOLUTION_MM)
 
 
 def slope_deg(profile: Profile) -> float:
-    """The lean of a ceiling, from the vertical, from which it is carried at once.
+    """The overhang of a ceiling, from the vertical, beyond which capitals carry all of it.
 
-    Along an even slope the rule grants tan θ = off / h, and c less only where a void closes.  Most
-    slopes between end in a wall and pass; carrying them all would add a tenth to the vaults.  The
-    few that do close are found by the rule, and mended.
+    Along an even slope the rule allows tan θ = off / h, and c less only where a void closes.  Most
+    slopes between the two end in a wall and pass; carrying them all adds a tenth to the vaults.
+    The rule finds the few that close, and carry_flagged.py carries them.
     """
     return min(math.degrees(math.atan(_slope_tan(built_for(profile)))), profile.overhang_deg)
 
@@ -56,10 +56,13 @@ def _slope_tan(rule: Acceptance) -> float:
 
 
 @dataclass(frozen=True)
-class Members:
-    """theta_deg : how far a funnel widens, from the vertical;  lean_deg : how far a column leans;
-    thickness_mm : least, across any axis;  slenderness : lengths over thickness from which a column
-    widens."""
+class MemberSizes:
+    """The sizes of funnels and columns.
+
+    theta_deg : how far a funnel widens, from the vertical;  lean_deg : the most a column leans;
+    thickness_mm : least, across any axis;  slenderness : length over thickness beyond which a
+    column thickens.
+    """
 
     theta_deg: float
     lean_deg: float
@@ -67,12 +70,12 @@ class Members:
     slenderness: float
 
     @staticmethod
-    def of(profile: Profile) -> Members:
-        """As the profile asks.  Raises UsageError where it has no nozzle."""
+    def of(profile: Profile) -> MemberSizes:
+        """The sizes for a profile.  Raises UsageError for a profile without a nozzle."""
         rule, cap_deg = built_for(profile), profile.overhang_deg
         lean_deg = math.degrees(math.atan(_slope_tan(rule) - JOINT_TAN))
         assert profile.column_slenderness is not None
-        return Members(
+        return MemberSizes(
             theta_deg=min(rule.steepest_deg, cap_deg),
             lean_deg=min(lean_deg, cap_deg),
             thickness_mm=profile.min_feature_mm,
@@ -81,35 +84,42 @@ class Members:
 
     @property
     def tan(self) -> float:
+        """tan θ: how far a funnel widens per height."""
         return math.tan(math.radians(self.theta_deg))
 
     @property
     def lean_tan(self) -> float:
+        """The tangent of the most a column leans."""
         return math.tan(math.radians(self.lean_deg))
 
     @property
     def radius_mm(self) -> float:
-        """Of a capital's lower end, and of an upright column's upper end."""
+        """Radius of a capital's lower end, and of an upright column's upper end."""
         return self.thickness_mm / 2
 
     @property
     def leaning_radius_mm(self) -> float:
-        """Of the upper end of a column that leans as much as it may."""
+        """Radius toward the lean of the upper end of a column that leans the most."""
         return self.radius_mm / math.cos(math.radians(self.lean_deg))
 
     def across_mm(self, length_mm: Float) -> Float:
-        """Half the thickness across the axis, a length below the farthest tip."""
+        """(…,) mm, half the thickness across the axis, lengths (…,) mm below the farthest tip."""
         share = np.maximum(np.asarray(length_mm) / (self.slenderness * self.thickness_mm), 1.0)
         half: Float = self.radius_mm * share**0.75
         return half
 
     def volume_mm3(self, above_mm: Float | float, length_mm: Float | float) -> Float:
-        """Of columns ``length_mm`` long that carry a tree of ``above_mm``."""
+        """Volume of columns that carry a tree.
+
+        above_mm : longest way up from the column to a tip;  length_mm : of the column; numbers, or
+        arrays (…,) of one shape, as is the result.
+        """
         above: Float = np.asarray(above_mm, dtype=np.float64)
         result: Float = self._from_tip(above + length_mm) - self._from_tip(above)
         return result
 
     def _from_tip(self, length: Float) -> Float:
+        """(…,) mm³, columns of lengths (…,) mm from their tips down."""
         slender = self.slenderness * self.thickness_mm
         wide = slender * (np.maximum(length / slender, 1.0) ** 2.5 - 1) / 2.5
         result: Float = math.pi * self.radius_mm**2 * (np.minimum(length, slender) + wide)

@@ -1,4 +1,4 @@
-"""Props: small funnels, each on a column of its own from the nearest material, shell or vault."""
+"""Extra columns: small funnels, each on a column from the nearest shell or vault."""
 
 from __future__ import annotations
 
@@ -9,47 +9,47 @@ import numpy as np
 
 from printprep.supports.capitals import cover
 from printprep.supports.ceiling import SPACING_MM
+from printprep.supports.column_feet import STEP_MM, nearest_feet, set_feet
+from printprep.supports.column_forest import Axes, Forest
 from printprep.supports.columns import FOOT_MM
-from printprep.supports.feet import STEP_MM, nearest_feet, set_feet
-from printprep.supports.forest import Axes, Forest
 from printprep.supports.solids import Frustum, columns, funnels, section
 
 if TYPE_CHECKING:
     from printprep.arrays import Float
-    from printprep.supports.dexels import Dexels
-    from printprep.supports.members import Members
+    from printprep.supports.inside_lookup import InsideLookup
+    from printprep.supports.member_sizes import MemberSizes
 
-# Points of an axis, from where a column that leans on it begins to stand out of it.
+# A column that leans on an axis stands out of it only after so many points of the axis.
 LEAVE_STEPS = 3
 
 
-def propped(
-    dexels: Dexels, points: Float, members: Members, axes: Axes
+def extra_columns(
+    lookup: InsideLookup, points: Float, members: MemberSizes, axes: Axes
 ) -> tuple[list[Frustum], list[Frustum]]:
-    """Funnels under points (n, 3) of ceiling, and a column for each.
+    """Build funnels under points of ceiling, and a column for each.
 
-    It stands where that is soonest, on shell or vaults; or it leans on an axis, as thick as the
-    column it enters.
+    points : (n, 3) mm.  Each column stands on the nearest shell or vault, or leans on a nearer
+    axis, as thick as the column it enters.
     """
     members = replace(members, lean_deg=members.theta_deg)
-    capitals = cover(points, members, SPACING_MM**2, dexels)
+    capitals = cover(points, members, SPACING_MM**2, lookup)
     nodes = capitals.node_mm
-    deepest = float(nodes[:, 2].max()) - dexels.floor_mm + STEP_MM
-    price, feet = nearest_feet(nodes, np.zeros(len(nodes)), dexels, members, deepest)
+    deepest = float(nodes[:, 2].max()) - lookup.floor_mm + STEP_MM
+    price, feet = nearest_feet(nodes, np.zeros(len(nodes)), lookup, members, deepest)
     forest = Forest()
-    props = []
+    leaning = []
     for node, foot, cost in zip(nodes, feet, price.tolist(), strict=True):
-        prop = _on_axis(node, cost, axes, members)
-        if prop is None:
+        column = _on_axis(node, cost, axes, members)
+        if column is None:
             forest.stand(forest.plant(node), foot)
         else:
-            props.append(prop)
-    set_feet(forest, dexels, members)
-    return funnels(capitals, members), columns(forest, members) + props
+            leaning.append(column)
+    set_feet(forest, lookup, members)
+    return funnels(capitals, members), columns(forest, members) + leaning
 
 
-def _on_axis(node: Float, cost_mm: float, axes: Axes, members: Members) -> Frustum | None:
-    """The column to the nearest point of an axis, where that is shorter than ``cost_mm``."""
+def _on_axis(node: Float, cost_mm: float, axes: Axes, members: MemberSizes) -> Frustum | None:
+    """The column from a node (3,) mm to the nearest axis, or None where ``cost_mm`` is shorter."""
     fall = node[2] - axes.place_mm[:, 2]
     d = np.sqrt(((axes.place_mm[:, :2] - node[:2]) ** 2).sum(axis=1))
     reach = (d <= fall * members.tan) & (fall > 0) & (axes.below_mm > FOOT_MM)

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from printprep.errors import InputError
-from printprep.generators.form import GRID, occupancy
+from printprep.generators.voxel_arrays import GRID, occupancy
 
 CUBE = np.argwhere(np.ones((3, 4, 5), dtype=bool)) + np.array([10, 20, 30])
 

@@ -1,7 +1,7 @@
-"""What a closed surface encloses of every cell of a grid: volume and centroid, by dexels.
+"""Volume and first moments of a solid in every cell of a grid, by dexels.
 
 A dexel is the stretch of a vertical line that lies inside (van Hook, SIGGRAPH 1986).  One line runs
-through each of n × n parts of every cell's footprint, somewhere in it: along z the integrals are
+through a random point in each of n × n parts of every cell's footprint.  Along z the integrals are
 exact; across, the jitter turns the error at upright walls from systematic to random, and a wall
 meets hundreds of lines.
 """
@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import runs
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import cross
+from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -44,8 +45,8 @@ def moments_in_cells(manifold: Manifold, grid: Grid, lines: int = 4) -> Float:
     )
     columns = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     columns += np.random.default_rng(0).uniform(-spacing / 2, spacing / 2, columns.shape)
-    crossings = cross(*arrays(manifold), columns)
-    # Sorted by column, then upward: a solid is entered and left by turns.
+    crossings = crossings_of(*arrays(manifold), columns)
+    # Sorted by column, then upward: crossings enter and leave the solid in turn.
     column, low, high = crossings.column[::2], crossings.z_mm[::2], crossings.z_mm[1::2]
     if len(crossings.z_mm) % 2 or not np.array_equal(column, crossings.column[1::2]):
         raise ArithmeticError("a line enters a closed surface and does not leave it")
@@ -53,9 +54,8 @@ def moments_in_cells(manifold: Manifold, grid: Grid, lines: int = 4) -> Float:
     first = np.clip(np.floor((low - bottom) / grid.pitch_mm).astype(int), 0, nz - 1)
     last = np.clip(np.floor((high - bottom) / grid.pitch_mm).astype(int), 0, nz - 1)
     # Every dexel once for every cell that it reaches into.
-    times = last - first + 1
-    dexel = np.repeat(np.arange(len(low)), times)
-    layer = np.arange(len(dexel)) - np.repeat(np.cumsum(times) - times, times) + first[dexel]
+    dexel, place = runs(last - first + 1)
+    layer = place + first[dexel]
     floor = bottom + layer * grid.pitch_mm
     from_, to = np.maximum(low[dexel], floor), np.minimum(high[dexel], floor + grid.pitch_mm)
     volume = np.maximum(to - from_, 0.0) * spacing**2

@@ -1,12 +1,13 @@
-"""Drains in a part: what ``hollow`` asks for, from one solve to the next."""
+"""The drainer: drains the parts that ``hollow`` makes, one solve after another."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from printprep.drainage.channel import bored
-from printprep.drainage.place import Drained, Hole, drained
-from printprep.drainage.space import around
+from printprep.drainage.drain_cavities import Drained, drain_cavities
+from printprep.drainage.driller import Hole
+from printprep.drainage.voxelized_part import voxelize
 from printprep.mesh.quantize import quantized
 from printprep.types import Drain, Drainage, Part
 
@@ -16,15 +17,16 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float
-    from printprep.drainage.space import Space
+    from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.profiles import Profile
     from printprep.types import Base
 
 
 class Drainer:
-    """Drains one part after another of the same solid, and keeps the holes that still serve.
+    """Drains one part after another of the same solid, and keeps the holes that still fit.
 
-    bores : what the holes of the last part take, as solids;  filled : what was filled in it.
+    bores : the solids that the holes of the last part remove;  filled : the filling of its
+    cavities.
     """
 
     def __init__(self, profile: Profile) -> None:
@@ -36,18 +38,18 @@ class Drainer:
         self.bores = Manifold()
         self.filled = Manifold()
         self._holes: tuple[Hole, ...] = ()
-        self._space: tuple[Base | None, Space] | None = None
+        self._space: tuple[Base | None, VoxelizedPart] | None = None
 
     @property
     def taken_mm3(self) -> float:
-        """What holes and filling change of the part."""
+        """Volume of the last part's holes and filling."""
         return float(self.bores.volume() + self.filled.volume())
 
     def drain(self, part: Part) -> tuple[Part, Drainage]:
-        """The part with its cavities drained."""
+        """Drain the cavities of a part."""
         from manifold3d import Manifold, OpType
 
-        found = drained(
+        found = drain_cavities(
             part.outside,
             part.cavities,
             diameter_mm=self.diameter_mm,
@@ -55,7 +57,7 @@ class Drainer:
             wall_mm=self.profile.wall_mm,
             min_feature_mm=self.profile.min_feature_mm,
             known=self._holes,
-            space=self._around(part),
+            voxelized=self._around(part),
         )
         self._holes = found.holes
         self.bores = _united([bored(hole.channel) for hole in found.holes])
@@ -73,10 +75,10 @@ class Drainer:
             _drainage(found),
         )
 
-    def _around(self, part: Part) -> Space:
-        """The outside on a grid: it changes only with the base."""
+    def _around(self, part: Part) -> VoxelizedPart:
+        """The part's outside on a grid; it changes only with the base."""
         if self._space is None or self._space[0] is not part.base:
-            self._space = part.base, around(part.outside, self.diameter_mm)
+            self._space = part.base, voxelize(part.outside, self.diameter_mm)
         return self._space[1]
 
 
@@ -103,5 +105,6 @@ def _drain(hole: Hole) -> Drain:
 
 
 def _place(point: Float) -> tuple[float, float, float]:
+    """A point (3,) as plain numbers."""
     x, y, z = (float(value) for value in point)
     return x, y, z

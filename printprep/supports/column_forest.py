@@ -1,4 +1,4 @@
-"""Trees while they grow: places, what each leans on, how much of a tree is above it."""
+"""The trees of columns while they grow: places, what each leans on, how much is above it."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ import numpy as np
 if TYPE_CHECKING:
     from printprep.arrays import Float, Int
 
-# Points along an axis on which others may lean.
+# Between points of an axis on which other columns may lean.
 AXIS_STEP_MM = 0.5
-# A column that stands falls at least so far.
+# A column that stands on the shell falls at least so far.
 LEAST_FALL_MM = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class Axes:
-    """Points along all columns: place_mm (n, 3), above_mm and below_mm (n,) longest way up to a
-    tip and way down to the shell, upper (n,) the place at the upper end of its column."""
+    """Points along the axes of all columns.
+
+    place_mm : (n, 3) mm;  above_mm : (n,) mm, longest way up to a tip;  below_mm : (n,) mm, way
+    down to the shell;  upper : (n,) number of the place at the column's upper end.
+    """
 
     place_mm: Float
     above_mm: Float
@@ -29,9 +32,10 @@ class Axes:
 
 @dataclass(eq=False)
 class Forest:
-    """Grows by its methods; places are known by number.
+    """Trees of columns between numbered places; its methods add columns.
 
-    down : what a place leans on, −1 for none;  stands : places that end on the shell.
+    above_mm : longest way up from each place to a tip;  down : the place it leans on, −1 for none;
+    stands : places that end on the shell.  A place is (3,) float64 mm.
     """
 
     _place: list[Float] = field(default_factory=list)
@@ -44,27 +48,32 @@ class Forest:
         return len(self._place)
 
     def place(self, index: int) -> Float:
+        """(3,) mm, a place by its number."""
         return self._place[index]
 
     def places(self, indices: Int) -> Float:
+        """(n, 3) mm, places by their numbers (n,)."""
         return np.array([self._place[index] for index in indices.tolist()]).reshape(-1, 3)
 
     def plant(self, place: Float) -> int:
-        """A new place that nothing leans on yet."""
+        """Add a place (3,) mm that nothing leans on yet; returns its number."""
         self._place.append(np.asarray(place, dtype=np.float64))
         self.above_mm.append(0.0)
         self.down.append(-1)
         return len(self._place) - 1
 
     def stand(self, index: int, foot: Float) -> None:
-        """A column from a place to the shell at ``foot``; upright where both are one."""
+        """Add a column from a place to its foot (3,) mm on the shell.
+
+        A foot that is not lower than the place moves to just under it.
+        """
         start = self._place[index]
         end = self.plant(foot if foot[2] < start[2] else start - [0.0, 0.0, LEAST_FALL_MM])
         self.stands.append(end)
         self.lean_on(index, end, 0.0)
 
     def lean_on(self, index: int, lower: int, below_mm: float) -> None:
-        """A column between two places; ``below_mm`` is the way from the lower one to the shell."""
+        """Add a column between two places; ``below_mm`` is the lower one's way to the shell."""
         self.down[index] = lower
         start, end = self._place[index], self._place[lower]
         length = float(np.linalg.norm(end - start))
@@ -81,7 +90,7 @@ class Forest:
         )
 
     def join(self, index: int, point: int) -> None:
-        """A column down to a point of an axis, numbered as in :meth:`axes`, which parts there."""
+        """Add a column down to a point of an axis, numbered as in :meth:`axes`; the axis splits."""
         axes = self.axes()
         upper, where = int(axes.upper[point]), axes.place_mm[point]
         lower = self.down[upper]
@@ -96,7 +105,7 @@ class Forest:
         self.lean_on(index, joint, float(axes.below_mm[point]))
 
     def axes(self) -> Axes:
-        """All points so far; their order stays."""
+        """All points so far, in a fixed order."""
         if len(self._axes) != 1:
             parts = self._axes
             none = Axes(np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
@@ -111,7 +120,7 @@ class Forest:
         return self._axes[0]
 
     def _carry(self, index: int, above_mm: float) -> None:
-        """More of a tree is above a place, and so above all that it leans on."""
+        """Raise ``above_mm`` of a place, and of all places it leans on."""
         while index >= 0 and above_mm > self.above_mm[index]:
             self.above_mm[index] = above_mm
             lower = self.down[index]
@@ -120,5 +129,5 @@ class Forest:
             index = lower
 
     def move(self, index: int, place: Float) -> None:
-        """Put the end of a column elsewhere on its line."""
+        """Move the end of a column to a place (3,) mm on its line."""
         self._place[index] = place

@@ -1,4 +1,4 @@
-"""A real model's solid and the room for cavities in it, as the pipeline makes them."""
+"""A real model's solid and its hollowable volume, as the pipeline makes them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from printprep.mesh.repair import repair
 from printprep.profiles import Profile
 
 
-def room_of(path: Path, up: str, size_mm: float, profile: Profile) -> tuple[Manifold, Manifold]:
-    """The repaired solid, and all of it that lies deeper than the wall."""
+def hollowable_of(
+    path: Path, up: str, size_mm: float, profile: Profile
+) -> tuple[Manifold, Manifold]:
+    """The repaired solid, and its hollowable volume: all that lies deeper than the wall."""
     solid = repair(place(read_mesh(path), up=up, size_mm=size_mm))
     depths = measure_depths(
         solid,
