@@ -11,6 +11,7 @@ from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -40,7 +41,8 @@ def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Fi
         return
     yield finding(
         "degenerate-triangles",
-        f"{len(flat)} of {len(raw.faces)} triangles have no area.",
+        f"{len(flat)} of {counted(len(raw.faces), 'triangle')} "
+        f"{'has' if len(flat) == 1 else 'have'} no area.",
         "Merge close vertices in the program that made the model; most programs drop such "
         "triangles.",
         value=float(len(flat)),

@@ -10,6 +10,7 @@ from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -28,7 +29,8 @@ def non_manifold_edges(context: CheckContext, profile: Profile) -> Iterator[Find
         return
     yield finding(
         "non-manifold-edges",
-        f"More than two triangles meet at {len(crowded)} edges: bodies touch there along a line.",
+        f"More than two triangles meet at {counted(len(crowded), 'edge')}: bodies touch there "
+        "along a line.",
         "Separate the bodies, or let them overlap; `printprep hollow` does either.",
         value=float(len(crowded)),
         limit=0.0,

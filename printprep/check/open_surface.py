@@ -10,6 +10,7 @@ from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -28,7 +29,8 @@ def open_surface(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     yield finding(
         "open-surface",
-        f"The surface is open at {len(open_)} edges: an odd number of triangles meets there.",
+        f"The surface is open at {counted(len(open_), 'edge')}: an odd number of triangles meets "
+        "there.",
         "Close it with `printprep hollow`, or in the program that made the model.",
         value=float(len(open_)),
         limit=0.0,

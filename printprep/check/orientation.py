@@ -12,6 +12,7 @@ from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.orient import right_side_out
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -31,8 +32,9 @@ def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     yield finding(
         "orientation",
-        f"{len(turned)} of {len(raw.faces)} triangles face inward: a slicer may take material for "
-        "empty space.",
+        f"{len(turned)} of {counted(len(raw.faces), 'triangle')} "
+        f"{'faces' if len(turned) == 1 else 'face'} inward: a slicer may take material for empty "
+        "space.",
         "Turn them with `printprep hollow`, or in the program that made the model.",
         value=float(len(turned)),
         limit=0.0,

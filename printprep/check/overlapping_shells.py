@@ -9,6 +9,7 @@ from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -25,7 +26,7 @@ def overlapping_shells(context: CheckContext, profile: Profile) -> Iterator[Find
     at = self_intersections.at_mm[self_intersections.apart]
     yield finding(
         "overlapping-shells",
-        f"Separate shells cross at {len(at)} edges: a slicer prints their union.",
+        f"Separate shells cross at {counted(len(at), 'edge')}: a slicer prints their union.",
         "Unite them with `printprep hollow`, or in the program that made the model.",
         value=float(len(at)),
         limit=0.0,

@@ -9,6 +9,7 @@ from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -25,7 +26,8 @@ def self_intersection(context: CheckContext, profile: Profile) -> Iterator[Findi
     at = self_intersections.at_mm[~self_intersections.apart]
     yield finding(
         "self-intersection",
-        f"The surface intersects itself at {len(at)} edges: programs disagree on what is inside.",
+        f"The surface intersects itself at {counted(len(at), 'edge')}: programs disagree on what "
+        "is inside.",
         "Unite it with itself in a modelling program; `printprep hollow` may leave it as it is.",
         value=float(len(at)),
         limit=0.0,

@@ -139,9 +139,9 @@ def _check_drains(job: Job, profile: Profile) -> None:
     from printprep.output.limits import check_output
 
     if not profile.drain.count and (job.plugs is not None or "drain.diameter_mm" in job.overrides):
-        option = "--plugs" if job.plugs is not None else "--drain-diameter"
+        what = "--plugs has" if job.plugs is not None else "A drain diameter has"
         raise UsageError(
-            f"{option} has no effect: profile {profile.name} makes no drain holes.",
+            f"{what} no effect: profile {profile.name} makes no drain holes.",
             "Request drain holes with --drains N, or choose a profile for resin or powder.",
         )
     if job.plugs is None:

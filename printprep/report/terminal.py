@@ -11,6 +11,7 @@ from rich.text import Text
 
 from printprep.report.simulation import azimuth_table, simulated
 from printprep.stand.lean import tilt_toward
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -187,15 +188,11 @@ def _drains(drainage: Drainage) -> str:
         return "none"
     outlets = sum(drain.role == "outlet" for drain in drainage.drains)
     vents = len(drainage.drains) - outlets
-    roles = f"{_counted(outlets, 'outlet')}, {_counted(vents, 'vent')}"
+    roles = f"{counted(outlets, 'outlet')}, {counted(vents, 'vent')}"
     text = f"{len(drainage.drains)} of {drainage.drains[0].diameter_mm:g} mm ({roles})"
     if drainage.filled_mm3 >= 1:
         text += f", {_plain(drainage.filled_mm3 / 1000)} cm³ of floors filled"
     return text
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _infill(infill: Infill) -> str:

@@ -60,7 +60,7 @@ def test_options_change_the_profile(handed, options, keys):
         ("--drains 0 --drain-diameter 3", "--drain-diameter has no effect without drain holes"),
         ("--no-drains --plugs p.3mf", "--plugs has no effect"),
         ("--plugs p.stl", "--plugs writes only .3mf"),
-        ("--plugs m-hollow.3mf", "is the part itself"),
+        ("--plugs m-hollow.3mf", "is the part, which would be replaced"),
         ("--drain-diameter 0", "drain.diameter_mm"),
         ("--drains 3 --set drain.count=2", "drain.count is set twice"),
     ],
