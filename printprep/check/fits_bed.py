@@ -22,7 +22,7 @@ _WRONG_UNIT = 10.0
 
 @rule("fits-bed")
 def fits_bed(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents preparing a part that does not fit into the printer.
+    """Prevents slicing a part that does not fit into the printer.
 
     A part that fits after a quarter turn on the bed fits: slicers turn it.
     """

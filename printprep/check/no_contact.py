@@ -24,7 +24,8 @@ def no_contact(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     yield finding(
         "no-contact",
         f"A body does not touch the bed in the first layer ({layer:g} mm): it cannot stand.",
-        "Seat its feet (--base always), turn the part (--up), or join the body to the others.",
+        "Seat its feet (`printprep hollow --base always`), turn the part (--up), or join the body "
+        "to the others.",
         value=0.0,
         at_mm=(x, y, z),
     )

@@ -46,9 +46,9 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     largest = int(np.argmax(np.where(hangs, doubled, 0)))
     yield finding(
         "overhang-area",
-        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}° and need "
-        "supports.",
-        "Try another axis up (--up) or another pose (--pose).",
+        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}° : a slicer "
+        "adds supports there.",
+        "Try another axis up (--up), or another pose (`printprep hollow --pose`).",
         value=area,
         limit=LEAST_MM2,
         at_mm=mean_point(corners[largest]),

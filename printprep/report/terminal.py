@@ -48,8 +48,7 @@ def show_result(
     )
     facts.add_row(
         "tips at",
-        f"{_tilt(result.tilt_solid_deg)} → {_tilt(result.tilt_deg)} "
-        f"(should stand at {result.lean})",
+        f"{_tilt(result.tilt_solid_deg)} → {_tilt(result.tilt_deg)}; should stand at {result.lean}",
     )
     if result.wall_min_mm is not None:
         facts.add_row(
@@ -99,7 +98,7 @@ def show_check(console: Console, found: Checked, *, verbose: bool) -> None:
     facts.add_row("size", " × ".join(f"{side:.4g}" for side in context.size_mm) + " mm")
     facts.add_row("mass", f"{_mass(found.mass_g)} in {profile.material.name}")
     tilt = _tilt(tilt_toward(context.stability, context.lean))
-    facts.add_row("tips at", f"{tilt} (should stand at {context.lean})")
+    facts.add_row("tips at", f"{tilt}; should stand at {context.lean}")
     if context.wall is not None:
         facts.add_row(
             "thinnest wall", f"{context.wall.value_mm:.2f} mm (profile: {profile.wall_mm:g} mm)"
@@ -120,7 +119,7 @@ def show_simulation(console: Console, found: Simulated, *, verbose: bool) -> Non
     facts = _facts_table()
     facts.add_row(
         "tips at",
-        f"{_tilt(tilt_toward(found.stability, found.lean))} (should stand at {found.lean})",
+        f"{_tilt(tilt_toward(found.stability, found.lean))}; should stand at {found.lean}",
     )
     facts.add_row("simulated", simulated(found.simulation))
     if verbose:

@@ -99,7 +99,7 @@ def show_verified(console: Console, found: Verified, *, with_findings: bool = Tr
     tilt = "no contact" if computed.tilt_deg is None else f"{computed.tilt_deg:.1f}°"
     facts.add_row(
         "tips at",
-        f"{found.tilt_deg:.1f}° printed, {tilt} computed (should stand at {computed.lean})",
+        f"{found.tilt_deg:.1f}° printed, {tilt} computed; should stand at {computed.lean}",
     )
     facts.add_row(
         "contact",

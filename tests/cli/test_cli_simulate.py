@@ -60,7 +60,7 @@ def test_what_falls_by_itself_fails_and_is_drawn(folder, tmp_path, capsys):
     gif, strip = tmp_path / "fall.gif", tmp_path / "fall.png"
     path = str(folder / "falling.stl")
     assert run(["simulate", path, "--gif", str(gif), "--strip", str(strip)]) == 1
-    assert "falls: turned by" in capsys.readouterr().out
+    assert "falls over: turned by" in capsys.readouterr().out
     assert gif.read_bytes()[:6] == b"GIF89a"
     assert strip.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 

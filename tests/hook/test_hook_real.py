@@ -33,7 +33,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def leaning(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A square prism sheared by 14 mm over 30: solid it tips over at 3.8°; it should stand at 10°."""
+    """A square prism sheared by 14 mm over 30: the solid tips over at 3.8° and should stand 10°."""
     prism = trimesh.creation.box((16, 16, 30))
     points = np.array(prism.vertices) + np.array([0, 0, 15])
     points[:, 0] += points[:, 2] * 14 / 30

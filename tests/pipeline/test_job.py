@@ -101,7 +101,11 @@ def test_a_simulation_is_part_of_the_result(job: Job):
         ({"options": FillOptions(resolution=4)}, UsageError, "resolution"),
         ({"plugs": Path("p.3mf")}, UsageError, "--plugs has no effect"),
         ({"overrides": {"drain.diameter_mm": 3.0}}, UsageError, "makes no drain holes"),
-        ({"simulate": True, "options": FillOptions(fill="infill")}, UsageError, "infill cannot be simulated"),
+        (
+            {"simulate": True, "options": FillOptions(fill="infill")},
+            UsageError,
+            "cannot be simulated",
+        ),
         ({"written_for": "orca", "options": FillOptions(fill="infill")}, UsageError, "orca"),
         ({"output": Path("o.stl"), "verify": True}, UsageError, "only a 3MF"),
         ({"options": FillOptions(slicer=Path("ps"))}, UsageError, "--slicer"),

@@ -31,7 +31,7 @@ def test_it_names_what_changed_and_where_the_file_is():
     text = flat(summary(hollow_result()))
     for fact in (
         "9.92 g → 4.84 g (49 % of the solid)",
-        "45.0° → 45.0° (should stand at 10°)",
+        "45.0° → 45.0°; should stand at 10°",
         "2.00 mm (profile: 1.2 mm)",
         "cavities 1, 4.1 cm³",
         "no filling of its voxels under 4.9 g stands at 10.5° (gap 2e-10)",
