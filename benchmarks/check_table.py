@@ -23,32 +23,39 @@ from printprep.types import Finding
 _INTRO = """\
 # What is checked, and how far the checks can be trusted
 
-`printprep check FILE` runs every rule on any mesh or 3MF, from any program; `printprep hollow` runs
-the same rules on the part it writes. A finding has a rule, a severity, a message, a fix, and where
-they make sense a value, its limit, a unit, a place in mm, an area and a volume (`--json`). With
-`--fail-on warning|error` a finding of that severity makes the exit code 1.
+`printprep check FILE` runs every rule on any mesh or 3MF, whichever program made it.
+`printprep hollow` runs the same rules on what it writes. This page says how the rules measure, and
+how they did on models whose answer is known.
 
-## How it is measured
+A finding has a rule, a severity, a sentence for the person who prints and a fix for the person who
+changes the model. Where it makes sense it also has a value, its limit, a unit, a place in mm, an
+area and a volume (see `--json`). With `--fail-on warning` or `--fail-on error` the exit code is 1
+when a finding reaches that level.
 
-- **Thickness** at a point is the diameter of the largest ball that touches the surface there and
-  that no facing side cuts into; a side faces where it is within 30° of parallel. Every square
-  millimetre has such a point. So edges, corners and facets are not thin; a wedge sharper than 30°
-  is. A pin is thin in both directions across, a wall in one. Facets get an allowance of a tenth,
-  and surfaces flat on the bed do not count. Around sealed cavities the wall is the exact distance
-  of the two surfaces. Against a plate, a shell of a sphere, a wedge and a cone the map is within
-  2 % or 0.02 mm everywhere (tests/thickness).
-- **Gaps** are measured in the same way in the empty space outside, where two sides stay apart; a
-  crease is not a gap.
-- **Drainage.** The test follows a ball as wide as the profile's drain on a grid of a sixth of its
-  width, and measures the clearance on the triangles themselves where it decides: a hole of the
-  ball's own width lets it through, one 0.1 mm narrower does not. A space that the ball cannot leave
-  is sealed, or its way out is too narrow, and its width is measured. A space that the ball leaves
-  only by rising, as the part stands, is a pool: a warning inside a space twice as wide as its ways
-  out, information in the open, as in a mug. Pockets smaller than the ball do not count.
-- **Suction cups** are empty regions of a layer with no way to the outside through the layers up to
-  it; the plate closes what opens to it. Layers are a two-hundredth of the longest side.
-- **Unsupported ceilings** follow the slicer's own acceptance rule, layer by layer.
-- **The file's own triangles** are checked before any repair.
+## How each rule measures
+
+- **Thickness.** There is one measuring point per square millimetre of surface. At each point
+  printprep takes the largest ball that touches the surface there and that no facing side cuts into.
+  A side faces the point when it is within 30° of parallel. So edges, corners and facets do not
+  count as thin, and a wedge counts only where it is sharper than 30°. A place that is thin in both
+  directions across is a pin; a place that is thin in one direction is a wall. Facets are allowed a
+  tenth of the limit. What lies flat on the bed does not count. Around sealed cavities, the wall is
+  the exact distance between the two surfaces. On a plate, a spherical shell, a wedge and a cone the
+  map is within 2 % or 0.02 mm everywhere (tests/thickness).
+- **Gaps.** They are measured in the same way, in the empty space outside. Two sides form a gap
+  where they stay apart; a crease is not a gap.
+- **Draining.** printprep follows a ball as wide as the drain hole of the profile. The grid is a
+  sixth of the ball's width; where it matters, the clearance is measured on the triangles
+  themselves. A hole as wide as the ball lets it through, a hole 0.1 mm narrower does not. A space
+  that the ball cannot leave at all is sealed, or its way out is too small; then the width of the
+  way out is measured. A space that the ball can leave only by rising, as the part stands, holds a
+  pool. A pool is a warning in a space at least twice as wide as its ways out, and information in
+  the open, as in a mug. Pockets smaller than the ball are left out.
+- **Suction cups.** A cup is an empty region of a layer with no way to the outside through the
+  layers up to its own. The plate closes whatever opens toward it. A layer is a two-hundredth of the
+  longest side.
+- **Unsupported ceilings** are found by the slicer's own rule for support, layer by layer.
+- **The triangles of the file** are checked before anything is repaired.
 """
 
 
@@ -82,9 +89,9 @@ def _rules(found: list[tuple[Case, tuple[Finding, ...]]]) -> list[str]:
     lines = [
         "## Every rule on every case",
         "",
-        f"{len(found)} solids in closed form, most of them just on one side of a limit "
-        "(tests/check/check_cases.py; this page is written by benchmarks/check_table.py). "
-        "Rules without a failing case report what `hollow` did.",
+        f"The cases are {len(found)} solids in closed form, most of them just on one side of a "
+        "limit (tests/check/check_cases.py). This page is written by benchmarks/check_table.py. "
+        "Rules without a failing case are about what `hollow` itself did.",
         "",
         "| rule | what for | found | missed | false alarms | rightly silent |",
         "|---|---|---|---|---|---|",

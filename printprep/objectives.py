@@ -1,8 +1,8 @@
-"""What an optimized interior is the best of: one door for every objective, one default.
+"""The objectives: what the optimization of the interior minimizes, and the default one.
 
-An objective says what it makes of a solid (in mm, with walls, base and lean) and what it makes of
-a generator's voxels.  To add one, put a row into ``OBJECTIVES``; command line, Python interface
-and generators find it there.  The rows import what they need when they run.
+An objective defines the density of a solid (in mm, with walls, base and lean) and the density of a
+generator's voxels.  To add one, put a row into ``OBJECTIVES``; the command line, the Python
+interface and the generators find it there.  The rows import what they need when they run.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ PLANE = "plane"
 
 @dataclass(frozen=True)
 class Solver:
-    """How an objective is solved: by "plane", exactly, or by "adam" on a torch device."""
+    """How an objective is solved: "plane", exactly, or "adam", by descent on a torch device."""
 
     name: str = PLANE
     device: str = "cpu"
 
 
 OnSolid = Callable[["Program", "Choice", "Lean", float, Solver], "Density"]
-"""Density of a solid on the base of a choice, aimed at a lean plus a margin in degrees."""
+"""The density of a solid with the base of a choice, solved for a lean plus a margin in degrees."""
 
 OnVoxels = Callable[["PaperDomain", float, "PaperSettings", Solver], "Float"]
-"""(n, n, n) density in [0, 1] of a generator's voxels that should stand a lean in degrees."""
+"""(n, n, n) density in [0, 1] of a generator's voxels, axes x, y, z, for a lean in degrees."""
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,10 @@ class Objective:
     """One objective.
 
     summary : one line for --help.
-    aims_at_lean : a larger margin makes its part stand farther, so that a part that falls short
-        is solved again.
-    solvers : names of the solvers it has, the default first.
+    aims_at_lean : whether a larger margin makes its part stand farther, so that a part that falls
+        short is solved again.
+    on_solid, on_voxels : its two densities.
+    solvers : names of its solvers, the default first.
     """
 
     name: str
@@ -62,12 +63,13 @@ def check_solver(objective: Objective, solver: Solver) -> None:
     if solver.name not in objective.solvers:
         raise UsageError(
             f"The objective {objective.name} has no solver {solver.name}.",
-            f"It has {', '.join(objective.solvers)}: leave --solver out, or change --objective.",
+            f"Its solvers are {', '.join(objective.solvers)}: leave out --solver, or change "
+            "--objective.",
         )
     if solver.name == PLANE and solver.device != "cpu":
         raise UsageError(
-            f"The solver plane runs on the cpu, not on {solver.device}.",
-            "Leave --device out, or use --objective paper --solver adam.",
+            f"The solver plane runs only on the cpu, not on {solver.device}.",
+            "Leave out --device, or use --objective paper --solver adam.",
         )
 
 
@@ -116,14 +118,14 @@ OBJECTIVES: dict[str, Objective] = {
     for row in (
         Objective(
             name="lean",
-            summary="the lightest part that stands at the lean",
+            summary="the least mass that stands at --lean",
             aims_at_lean=True,
             on_solid=_lean_on_solid,
             on_voxels=_lean_on_voxels,
         ),
         Objective(
             name="paper",
-            summary="DensiCrafter's weighted sum",
+            summary="the weighted sum of the DensiCrafter paper",
             aims_at_lean=False,
             on_solid=_paper_on_solid,
             on_voxels=_paper_on_voxels,
@@ -134,7 +136,7 @@ OBJECTIVES: dict[str, Objective] = {
 
 
 def objective_of(name: str) -> Objective:
-    """The objective of that name.  Raises UsageError, with the names there are."""
+    """The objective with that name.  Raises UsageError, which lists the names."""
     found = OBJECTIVES.get(name)
     if found is None:
         raise UsageError(

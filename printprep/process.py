@@ -1,6 +1,6 @@
-"""The printing processes: one row each, read wherever a rule depends on how a part is made.
+"""The printing processes, one row each, for everything that depends on how a part is made.
 
-A fourth process is one more row in ``PROCESSES`` and a profile that names it.
+To add one, put a row into ``PROCESSES`` and name it in a profile.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Process:
-    """What a process does to a part, as far as hollowing and checking depend on it.
+    """The traits of a process that hollowing and checking depend on.
 
-    name : the profile key ``process``.
-    has_nozzle : it lays lines, so a profile needs nozzle, line width and column slenderness, may
-        have infill, and PrusaSlicer's .ini fits it.
-    ceilings_sag : a ceiling needs something below it, so cavities get vaults.
-    cavity_holds : what stays in a sealed cavity, in words.
-    must_drain : that matters: the cavity needs drain holes.
-    leaves_pools : what is inside is liquid and stands in pools as the part stands.
-    peels_from_film : each layer is pulled off a film, so a closed cup sucks at it.
-    loosens_from_bed : nothing but its foot holds the part, so a small one comes loose.
+    name : the value of the profile key ``process``.
+    has_nozzle : it prints lines, so a profile needs nozzle, line width and column slenderness, may
+        have infill, and can be exported as PrusaSlicer's .ini.
+    ceilings_sag : a ceiling needs support from below, so cavities get vaults.
+    cavity_holds : what stays in a sealed cavity, as a word in messages.
+    must_drain : it must not stay inside, so cavities need drain holes.
+    leaves_pools : it is liquid, so pools stand in the part.
+    peels_from_film : each layer is peeled off a film, so suction cups matter.
+    loosens_from_bed : only the first layer holds the part, so one with little contact comes loose.
     """
 
     name: str

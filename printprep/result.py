@@ -1,4 +1,4 @@
-"""What ``hollow`` found out: the part, its figures as a file carries them, and how to write it."""
+"""The result of ``hollow``: the part, its figures as a file carries them, and how to write it."""
 
 from __future__ import annotations
 
@@ -49,14 +49,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class HollowResult:
-    """Everything ``hollow`` found out.  Masses are geometric volume times material density.
+    """Everything that ``hollow`` computes.  Masses are geometric volume times material density.
 
-    Where ``infill`` takes the place of cavities, mass and stability are those of the print.
+    With ``infill`` instead of cavities, mass and stability are those of the print.
 
-    model, solid : as placed, and repaired;  part : what is printed.
-    stability_solid, stability : how solid and part stand;  lean : what the part is asked to stand.
+    model : as placed;  solid : repaired;  part : what is printed.
+    stability_solid, stability : how solid and part stand.
+    lean : the lean at which the part should stand.
     wall_min_mm : thinnest wall between a cavity and the outside, None without a cavity.
-    seconds : of each stage; they go into no file.
+    seconds : duration of each stage; no file contains it.
     """
 
     model: Model
@@ -81,7 +82,7 @@ class HollowResult:
 
     @property
     def lean_deg(self) -> float:
-        """The angle of the lean asked for."""
+        """Angle of the requested lean."""
         return self.lean.angle_deg
 
     @property
@@ -91,19 +92,19 @@ class HollowResult:
 
     @property
     def base_mass_g(self) -> float:
-        """Mass that the base adds to the model, 0 without a base."""
+        """Mass in g that the base adds to the model, 0 without a base."""
         added_mm3 = float(self.part.outside.volume() - self.solid.manifold.volume())
         return added_mm3 * float(self.profile.material.density_g_cm3) / 1000
 
     @property
     def supports_mass_g(self) -> float:
-        """Mass of the vaults over all the hollowable volume, 0 without vaults."""
+        """Mass in g of the vaults in the whole hollowable volume, 0 without vaults."""
         added_mm3 = 0.0 if self.supports is None else self.supports.added_mm3
         return added_mm3 * float(self.profile.material.density_g_cm3) / 1000
 
     @property
     def tilt_solid_deg(self) -> float | None:
-        """Tilt angle of the solid, toward the lean's azimuth if it has one."""
+        """Tilt angle of the solid, toward the lean's azimuth if it has one; None: no contact."""
         return tilt_toward(self.stability_solid, self.lean)
 
     @property
@@ -113,7 +114,7 @@ class HollowResult:
 
     @property
     def centre_mm(self) -> tuple[float, float, float]:
-        """Centre of mass of the part, of its print where infill fills it."""
+        """Centre of mass (x, y, z) of the part, or with infill of its print."""
         if self.infill is not None:
             return self.infill.centre_mm
         return mass_properties(self.part.manifold).centre_mm
@@ -123,7 +124,7 @@ class HollowResult:
         return _figures_of(self)
 
     def contents(self) -> Contents:
-        """What a file of the part is made from."""
+        """Everything that a file of the part is made from."""
         from printprep.output.part_file import Contents
 
         return Contents(self.part, self.profile, self.infill, self.figures())
@@ -134,7 +135,7 @@ class HollowResult:
         Raises
         ------
         UsageError : a suffix other than .3mf, .stl, .obj, .ply.
-        OutputError : the file cannot be written there; what was there before is then untouched.
+        OutputError : the file cannot be written; an existing file is then unchanged.
         """
         from printprep.output.part_file import write_part
 
@@ -181,7 +182,7 @@ def _figures_of(result: HollowResult) -> Figures:
 
 
 def rounded_finding(item: Finding) -> Finding:
-    """A finding with its numbers as JSON carries them."""
+    """A finding with its numbers rounded as in JSON."""
     return replace(
         item,
         value=number(item.value),
@@ -193,7 +194,7 @@ def rounded_finding(item: Finding) -> Finding:
 
 
 def rounded_repair(repair: Repair) -> Repair:
-    """A repair with its numbers as JSON carries them."""
+    """A repair with its numbers rounded as in JSON."""
     return replace(
         repair,
         moved_max_mm=round(repair.moved_max_mm, 4),
@@ -203,7 +204,7 @@ def rounded_repair(repair: Repair) -> Repair:
 
 
 def cavity_figures(cavities: Sequence[Manifold]) -> Cavities:
-    """How many cavities there are, each with its volume and bounding box."""
+    """The number of cavities, each with its volume and bounding box."""
     from printprep.output.figures import Cavities, Cavity
 
     items = tuple(Cavity(rounded(void.volume()), _bounds(void, 3)) for void in cavities)
@@ -223,13 +224,13 @@ def _bounds(manifold: Manifold, decimals: int) -> tuple[Place, Place]:
 def _contact(part: Manifold, first_layer_mm: float) -> ContactFigures | None:
     from printprep.output.figures import ContactFigures
 
-    found = contact_of(section_at_bed(part, first_layer_mm))
-    if found is None:
+    contact = contact_of(section_at_bed(part, first_layer_mm))
+    if contact is None:
         return None
     polygon = tuple(
-        (round(float(x), 4) + 0.0, round(float(y), 4) + 0.0) for x, y in found.polygon_mm
+        (round(float(x), 4) + 0.0, round(float(y), 4) + 0.0) for x, y in contact.polygon_mm
     )
-    return ContactFigures(polygon, rounded(found.area_mm2))
+    return ContactFigures(polygon, rounded(contact.area_mm2))
 
 
 def _advice(advice: Advice | None) -> Advice | None:
@@ -245,23 +246,23 @@ def _advice(advice: Advice | None) -> Advice | None:
 def _vaults(result: HollowResult) -> Vaults | None:
     from printprep.output.figures import Vaults
 
-    found = result.supports
-    if found is None:
+    supports = result.supports
+    if supports is None:
         return None
     return Vaults(
-        capitals=found.capitals,
-        columns=found.columns,
-        added_mm3=rounded(found.added_mm3),
+        capitals=supports.capitals,
+        columns=supports.columns,
+        added_mm3=rounded(supports.added_mm3),
         added_g=rounded(result.supports_mass_g),
-        unsupported_mm2=rounded(found.unsupported_mm2),
-        islands=found.islands,
+        unsupported_mm2=rounded(supports.unsupported_mm2),
+        islands=supports.islands,
     )
 
 
-def _drains(found: Drainage | None) -> Drains | None:
+def _drains(drainage: Drainage | None) -> Drains | None:
     from printprep.output.figures import Drains
 
-    if found is None:
+    if drainage is None:
         return None
     items = tuple(
         replace(
@@ -271,13 +272,13 @@ def _drains(found: Drainage | None) -> Drains | None:
             diameter_mm=rounded(drain.diameter_mm),
             length_mm=rounded(drain.length_mm, 3),
         )
-        for drain in found.drains
+        for drain in drainage.drains
     )
     return Drains(
         count=len(items),
         items=items,
-        filled_mm3=rounded(found.filled_mm3),
-        closed_mm3=tuple(rounded(volume) for volume in found.closed_mm3),
+        filled_mm3=rounded(drainage.filled_mm3),
+        closed_mm3=tuple(rounded(volume) for volume in drainage.closed_mm3),
     )
 
 
@@ -297,8 +298,8 @@ def _infill(infill: Infill | None) -> SparseInfill | None:
     )
 
 
-def _alternative(other: AlternativeFill | None) -> AlternativeFill | None:
-    return None if other is None else replace(other, mass_g=rounded(other.mass_g, 3))
+def _alternative(fill: AlternativeFill | None) -> AlternativeFill | None:
+    return None if fill is None else replace(fill, mass_g=rounded(fill.mass_g, 3))
 
 
 def _base(result: HollowResult) -> BaseFigures | None:
@@ -310,12 +311,12 @@ def _base(result: HollowResult) -> BaseFigures | None:
     return BaseFigures(rounded(base.seat_mm), rounded(base.growth_mm), rounded(result.base_mass_g))
 
 
-def _certificate(found: Certificate | None) -> Certificate | None:
-    if found is None:
+def _certificate(certificate: Certificate | None) -> Certificate | None:
+    if certificate is None:
         return None
     return replace(
-        found,
-        voxel_mass_g=rounded(found.voxel_mass_g, 9),
-        bound_g=rounded(found.bound_g, 9),
-        gap=rounded(found.gap, 3),
+        certificate,
+        voxel_mass_g=rounded(certificate.voxel_mass_g, 9),
+        bound_g=rounded(certificate.bound_g, 9),
+        gap=rounded(certificate.gap, 3),
     )

@@ -1,7 +1,7 @@
-"""The frozen values that cross from one room of printprep to the next.
+"""The frozen values that pass from one room of printprep to the next.
 
 Axis order is x, y, z; z is up; the bed is z = 0.  Lengths are mm, volumes mm³, masses g, angles
-degrees, densities g/cm³.  ``eq=False`` where a field is an array or a mesh: identity is meant.
+degrees, densities g/cm³.  Classes with an array or a mesh compare by identity (``eq=False``).
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """Triangles as they came in, welded, in mm, z up, sitting on the bed, centred on x = y = 0.
+    """The triangles of the input, welded, in mm, z up, on the bed, centred on x = y = 0.
 
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64, counter-clockwise seen from outside.
     placement : (4, 4) float64, file coordinates → these coordinates.
-    name : the file's stem (never a path).
+    name : the file's stem, never a path.
     """
 
     vertices: Float
@@ -38,11 +38,11 @@ class Model:
 
 @dataclass(frozen=True)
 class Repair:
-    """What it took to make a solid of the model.
+    """How the model was made into a solid.
 
-    rung : the step of the ladder that sufficed.
+    rung : the kind of repair, from the least to the most invasive.
     actions : one short sentence each, in order; empty when rung is "as-is".
-    moved_max_mm, moved_mean_mm : how far the model's surface lies from the solid's, over samples.
+    moved_max_mm, moved_mean_mm : distance of the model's surface from the solid's, over samples.
     resolution_mm : cell size of the remesh, None on the other rungs.
     """
 
@@ -55,7 +55,10 @@ class Repair:
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A valid manifold of positive volume (shells inside it are true voids), on the bed, in mm."""
+    """A valid manifold of positive volume, on the bed, in mm; shells inside it are real voids.
+
+    placement : (4, 4) float64, file coordinates → these coordinates.
+    """
 
     manifold: Manifold
     name: str
@@ -67,8 +70,8 @@ class Solid:
 class MassProperties:
     """Integrals over a closed mesh at unit density.
 
-    volume_mm3; centre_mm : (x, y, z); inertia_mm5 : 3×3 nested tuple about the centre of mass
-    (multiply by g/mm³ for g·mm²).
+    centre_mm : centre of mass (x, y, z);  inertia_mm5 : (3, 3) about the centre of mass, rows as
+    tuples (multiply by g/mm³ for g·mm²).
     """
 
     volume_mm3: float
@@ -78,11 +81,11 @@ class MassProperties:
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing the user should know.
+    """One fact that the user should know.
 
-    rule : stable id of the rule;  value, limit : numbers in ``unit`` or None;
-    message : what is so, for the one who prints;  fix : the way out, for the one who changes it.
-    at_mm : where, or None;  area_mm2, volume_mm3 : how much of it, None where it has none.
+    rule : stable id of its kind;  value, limit : numbers in ``unit``, or None.
+    message : what is so;  fix : what to do about it, or None.
+    at_mm : the place (x, y, z), or None;  area_mm2, volume_mm3 : its extent, or None.
     """
 
     rule: str
@@ -99,7 +102,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Lean:
-    """A lean the part must stand: by an angle, in every direction or toward one azimuth.
+    """A lean at which the part must stand: an angle, in every direction or toward one azimuth.
 
     azimuth_deg : from +x counter-clockwise, None for every direction.
     """
@@ -110,14 +113,14 @@ class Lean:
     def __str__(self) -> str:
         if self.azimuth_deg is None:
             return f"{self.angle_deg:g}°"
-        return f"{self.angle_deg:g}° toward {self.azimuth_deg:g}°"
+        return f"{self.angle_deg:g}° toward azimuth {self.azimuth_deg:g}°"
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A regular grid of cell centres.
 
-    origin_mm : (3,) centre of cell (0, 0, 0);  pitch_mm : edge of a cubic cell;
+    origin_mm : (3,) centre of cell (0, 0, 0);  pitch_mm : edge length of a cubic cell;
     shape : (nx, ny, nz).
     """
 
@@ -128,14 +131,14 @@ class Grid:
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """What may change and what may not, on one grid; arrays of shape ``grid.shape``.
+    """Which cells of a grid may change and which may not; arrays of shape ``grid.shape``.
 
-    depth_mm : float64, signed distance to the model's surface, positive inside; exact in the
-    narrow band around the wall's inner face, elsewhere at least on the right side of it.
+    depth_mm : float64, signed distance to the model's surface, positive inside.  It is exact in a
+    narrow band around the inner face of the wall, and elsewhere at least on the right side of it.
     shell, interior, base, free : bool, by cell centre (free = interior; the base is geometry).
-    share : float64 in [0, 1], the part of each cell that lies deeper than the wall, the weight of
+    share : float64 in [0, 1], the share of each cell that lies deeper than the wall: the weight of
     a free voxel in the linear program.
-    body : int64, −1 outside, else which disjoint body of the solid the cell belongs to.
+    body : int64, −1 outside, else the disjoint body of the solid that the cell belongs to.
     """
 
     grid: Grid
@@ -150,7 +153,7 @@ class Domain:
 
 @dataclass(frozen=True)
 class Plane:
-    """The half-space {x : normal · x > offset_mm} that stays empty; below it is filled."""
+    """A filling's plane: {x : normal · x > offset_mm} stays empty, below it is filled."""
 
     normal: tuple[float, float, float]
     offset_mm: float
@@ -160,7 +163,7 @@ class Plane:
 class Certificate:
     """Proof that no lighter filling of the same voxels stands at the same lean.
 
-    voxel_mass_g : mass of the filling found;  bound_g : no filling weighs less (weak duality);
+    voxel_mass_g : mass of this filling;  bound_g : no filling weighs less (weak duality);
     gap : (voxel_mass_g − bound_g) / voxel_mass_g.
     """
 
@@ -173,11 +176,11 @@ class Certificate:
 class Density:
     """The optimized interior.
 
-    rho : float64 of the grid's shape, 1 solid, 0 empty, over the whole model.
-    planes : one per body: the plane above which the cavity lies, or None when nothing is filled;
-    None in all: no plane, the cavity is where rho is below one half.
-    aim_deg : the lean solved for (margin included), None for the paper's objective.
-    reachable_deg : largest lean any filling reaches, None when the lean asked for is feasible.
+    rho : (nx, ny, nz) float64 over the whole model, 1 solid, 0 empty.
+    planes : for each body the plane above which its cavity lies, or None if nothing is filled.
+    Without planes, the cavity is where rho is below one half.
+    aim_deg : the lean it is solved for, including the margin; None for the paper's objective.
+    reachable_deg : largest lean any filling reaches, None if the requested lean is feasible.
     """
 
     rho: Float
@@ -189,7 +192,10 @@ class Density:
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """New material around the feet: a seat (columns down to the bed) and a grown footprint."""
+    """New material around the feet: a seat (columns down to the bed) and a grown footprint.
+
+    seat_mm : height of the seat;  growth_mm : how far the footprint is grown.
+    """
 
     manifold: Manifold
     seat_mm: float
@@ -200,8 +206,10 @@ class Base:
 class Part:
     """What is printed.
 
-    manifold : the whole part, cavities as inverted shells;  outside : model with its base, with
-    the voids the model already had;  cavities : positive solids that were taken out, one each.
+    manifold : the whole part, cavities as inverted shells.
+    outside : the model with its base, and with the voids that the model already had.
+    cavities : positive solids that were cut out.
+    placement : (4, 4) float64, file coordinates → these coordinates.
     """
 
     manifold: Manifold
@@ -214,13 +222,14 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """How a part stands on the bed; the weakest body of it when there are several.
+    """How a part stands on the bed; with several bodies, how the least stable one stands.
 
-    support_polygon_mm : (k, 2) counter-clockwise hull of the contact, empty when nothing touches;
-    contact_area_mm2 : of the section itself, not of its hull;
-    tilt_deg : the lean at which it tips over the weakest edge, negative when it tips by itself,
-    None when it has no contact;
-    weakest_edge : index of the edge from vertex i to i + 1, with its outward azimuth.
+    support_polygon_mm : (k, 2) counter-clockwise hull of the contact, empty without contact.
+    contact_area_mm2 : area of the contact itself, not of its hull.
+    tilt_deg : the lean at which it tips over the weakest edge, negative if it tips by itself, None
+    without contact.
+    weakest_edge : index i of the edge from vertex i to i + 1;  weakest_azimuth_deg : its outward
+    direction.
     """
 
     support_polygon_mm: Float
@@ -233,10 +242,10 @@ class Stability:
 
 @dataclass(frozen=True)
 class Settled:
-    """What became of a part that was let go on the bed; the worst body of it when several.
+    """A part that stood freely on the bed in simulation; with several bodies, the worst of them.
 
-    rotation_deg : how far it had turned in the end;  stands : whether that is less than falling.
-    seconds : of simulated time.
+    rotation_deg : how far it turned in the end;  stands : whether it did not fall over.
+    seconds : simulated time.
     """
 
     rotation_deg: float
@@ -246,15 +255,15 @@ class Settled:
 
 @dataclass(frozen=True)
 class Tipping:
-    """What becomes of a part that leans ever more toward one azimuth.
+    """A part that leans more and more toward one azimuth in simulation.
 
     azimuth_deg : the direction it leans toward, from +x counter-clockwise.
-    computed_deg : its tilt angle that way, from support polygon and centre of mass; negative when
-    it tips by itself.
-    tips_deg : the lean at which its foot comes off the bed in simulation.
-    falls_deg : the lean at which it goes over; more than tips_deg where another part of it, a
-    wing or a tail, comes down on the bed and holds it.
-    Both are 0 when it happens on the level bed, None when not up to the largest lean tried.
+    computed_deg : its tilt angle in that direction, from support polygon and centre of mass;
+    negative if it tips by itself.
+    tips_deg : the lean at which its foot leaves the bed.
+    falls_deg : the lean at which it falls over; more than tips_deg if a wing or a tail comes down
+    on the bed and holds it.
+    Both are 0 if it happens on the level bed, None if it does not up to the largest lean tried.
     """
 
     azimuth_deg: float
@@ -265,9 +274,9 @@ class Tipping:
 
 @dataclass(frozen=True)
 class Simulation:
-    """A part in the hands of a physics engine: let go, and on a bed that tilts slowly.
+    """A part in a physics engine: standing freely, then on a bed that tilts slowly.
 
-    tippings : one for each azimuth tried, none for a part that has no contact.
+    tippings : one for each azimuth tried, none for a part without contact.
     """
 
     settled: Settled
@@ -276,10 +285,10 @@ class Simulation:
 
 @dataclass(frozen=True)
 class Supports:
-    """The vaults that carry a cavity's ceilings from inside, over all the room for cavities.
+    """The vaults that carry the ceilings from inside, in the whole hollowable volume.
 
-    added_mm3 : what they take of the room; where ballast fills it too, nothing is counted twice.
-    unsupported_mm2, islands : what the slicer's acceptance rule still flags.
+    added_mm3 : their volume; where ballast fills it too, nothing is counted twice.
+    unsupported_mm2, islands : what the slicer's rule for supports still finds.
     """
 
     capitals: int
@@ -293,9 +302,9 @@ class Supports:
 class Drain:
     """A round hole from a cavity to the outside.
 
-    role : an outlet empties a pool, a vent lets air in;  cavity : index among the part's.
+    role : an outlet empties a pool, a vent lets air in;  cavity : index of the part's cavity.
     centre_mm : the middle of its mouth, on the outside;  axis : unit vector, outward.
-    length_mm : of its axis in material.
+    length_mm : length of its axis inside material.
     """
 
     role: Literal["outlet", "vent"]
@@ -308,11 +317,12 @@ class Drain:
 
 @dataclass(frozen=True)
 class Drainage:
-    """How a part drains as it stands on the plate.
+    """How a part drains while it stands on the plate.
 
     drains : cavity by cavity, outlets first.
-    filled_mm3 : of the cavities' floors, where liquid would stand that no outlet takes.
-    closed_mm3 : volumes of cavities that no hole opens: they are filled.
+    filled_mm3 : volume of cavity floors that are filled, where a pool would stand below every
+    outlet.
+    closed_mm3 : volumes of the cavities that no hole drains; they are filled.
     """
 
     drains: tuple[Drain, ...]
@@ -322,10 +332,10 @@ class Drainage:
 
 @dataclass(frozen=True)
 class Advice:
-    """What would make a lean that is out of reach feasible.
+    """What would make a lean feasible that is out of reach.
 
     growth_mm : least growth of the footprint, in steps of half a millimetre, at which some filling
-    reaches it; None when none up to 30 mm does.
+    reaches it; None if no growth up to 30 mm is enough.
     poses_deg : tilt angles of the solid in its stable poses, the steadiest first.
     """
 
@@ -335,13 +345,14 @@ class Advice:
 
 @dataclass(frozen=True, eq=False)
 class Infill:
-    """A part whose inside is the slicer's sparse infill, and what of it prints dense instead.
+    """The slicer's sparse infill inside a part, and the ballast that prints dense.
 
-    pattern, density, perimeters, layers : what the object carries;  ballast : solids that cover
-    what prints dense, in the part's coordinates;  ballast_g : what they add to the sparse print.
-    moments : (4,) volume in mm³ of all that is deposited, and its first moments in mm⁴.
-    slicer : its name and version where the print was weighed in its G-code, None where it is
-    estimated;  slices : how often it was asked.
+    pattern, density, perimeters, layers : the object's settings in the file.
+    ballast : solids that cover what prints dense, in the part's coordinates;  ballast_g : the mass
+    that they add to the sparse print.
+    moments : (4,) volume in mm³ of all that is deposited, and its first moments x, y, z in mm⁴.
+    slicer : name and version of the slicer whose G-code was weighed, None if the print is
+    estimated;  slices : how often it ran.
     """
 
     pattern: str
@@ -356,14 +367,14 @@ class Infill:
 
     @property
     def centre_mm(self) -> tuple[float, float, float]:
-        """The centre of mass of the print."""
+        """Centre of mass (x, y, z) of the print."""
         x, y, z = (float(value) for value in self.moments[1:] / self.moments[0])
         return x, y, z
 
 
 @dataclass(frozen=True)
 class AlternativeFill:
-    """What the fill that was not chosen would weigh, estimated."""
+    """The mass with the fill that was not chosen, estimated."""
 
     fill: str
     mass_g: float

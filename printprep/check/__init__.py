@@ -1,14 +1,15 @@
-"""What can be wrong with a part: one rule a file, the same for our own parts and for any mesh.
+"""The rules that a part is checked against, one rule in each file.
 
-``run_rules(context, profile)`` runs them all; a rule is registered by being imported here.
+The same rules check the parts that printprep writes and any other mesh.
+``run_rules(context, profile)`` runs them all; importing a rule here registers it.
 """
 
 from printprep.check import (  # noqa: F401  (imported to register their rules)
     coarse_facets,
     contact_area,
     degenerate_triangles,
+    drain_filled,
     drain_too_small,
-    drained,
     fits_bed,
     gap,
     lean_out_of_reach,

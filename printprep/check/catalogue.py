@@ -1,7 +1,7 @@
 """Every finding that printprep can print: its id, its unit, its severities, what it prevents.
 
-Ids never change: scripts filter on them.  A finding is made with :func:`finding`, which takes unit
-and severity from here, wherever in the program it is made.
+Ids never change: scripts filter on them.  Every part of the program makes its findings with
+:func:`finding`, which takes the unit and the severity from this catalogue.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from printprep.types import Finding, Severity, Unit
 class Kind:
     """One kind of finding.
 
-    unit : of value and limit; None for a plain count, or for a finding without a value.
-    severities : the ones it can have; with more than one, the rule chooses.
-    prevents : the mistake it saves the user from, in a few words.
+    unit : of value and limit; None for a count, or for a finding without a value.
+    severities : those it can have; where there are several, the rule chooses one.
+    prevents : the mistake or surprise it prevents, in a few words.
     """
 
     id: str
@@ -33,56 +33,56 @@ _WARNING: tuple[Severity, ...] = ("warning",)
 _ERROR: tuple[Severity, ...] = ("error",)
 
 _KINDS = (
-    # the file's own triangles
+    # the triangles of the file
     Kind("coarse-facets", "mm", _INFO, "facets that show on a round model"),
-    Kind("degenerate-triangles", None, _INFO, "triangles without area that programs drop"),
-    Kind("non-manifold-edges", None, _WARNING, "a surface that programs part differently"),
-    Kind("open-surface", None, _ERROR, "holes that a slicer closes its own way"),
-    Kind("orientation", None, _WARNING, "a solid that is taken for a void"),
-    Kind("overlapping-shells", None, _INFO, "programs that differ on what is inside"),
-    Kind("repaired", "mm", ("info", "warning"), "a slicer that guesses what a surface means"),
-    Kind("self-intersection", None, _WARNING, "programs that differ on what is inside"),
-    Kind("watertight", None, _ERROR, "a cavity that a slicer fills, a layer left open"),
+    Kind("degenerate-triangles", None, _INFO, "triangles without area, which some programs drop"),
+    Kind("non-manifold-edges", None, _WARNING, "programs that separate bodies differently"),
+    Kind("open-surface", None, _ERROR, "holes that each slicer closes in its own way"),
+    Kind("orientation", None, _WARNING, "a solid that a slicer takes for a void"),
+    Kind("overlapping-shells", None, _INFO, "programs that disagree on what is inside"),
+    Kind("repaired", "mm", ("info", "warning"), "a slicer that guesses what is inside"),
+    Kind("self-intersection", None, _WARNING, "programs that disagree on what is inside"),
+    Kind("watertight", None, _ERROR, "a cavity that a slicer fills, or an open layer"),
     # size and place
-    Kind("fits-bed", "mm", _ERROR, "a part that the printer cannot hold"),
-    Kind("tiny-model", "mm", _ERROR, "a file in another unit that prints as a crumb"),
+    Kind("fits-bed", "mm", _ERROR, "a part that does not fit into the printer"),
+    Kind("tiny-model", "mm", _ERROR, "a file in another unit, which prints far too small"),
     # walls, pins, gaps
-    Kind("gap", "mm", _INFO, "surfaces that grow together"),
-    Kind("min-feature", "mm", _WARNING, "a pin that breaks off or is left out"),
+    Kind("gap", "mm", _INFO, "surfaces that fuse together"),
+    Kind("min-feature", "mm", _WARNING, "a pin that breaks off, or that a slicer leaves out"),
     Kind("wall-thickness", "mm", ("info", "warning", "error"), "a wall with holes, or that breaks"),
     # ceilings and overhangs
-    Kind("overhang-area", "mm2", _INFO, "supports that come as a surprise"),
+    Kind("overhang-area", "mm2", _INFO, "unexpected supports"),
     Kind("unsupported-ceiling", "mm2", _WARNING, "a ceiling that sags into the cavity"),
     # what stays inside
-    Kind("drain-filled", "mm3", _INFO, "doubt about why a cavity was left solid"),
-    Kind("drain-too-small", "mm", _ERROR, "a hole through which nothing runs"),
-    Kind("nothing-to-hollow", None, _INFO, "surprise at a part that weighs what it did"),
-    Kind("sealed-cavity", "mm3", ("info", "error"), "resin or powder that stays inside for good"),
-    Kind("suction-cup", "mm2", _WARNING, "layers that tear off the film"),
-    Kind("trapped-volume", "mm3", ("info", "warning"), "resin that leaks, or cures where it lies"),
+    Kind("drain-filled", "mm3", _INFO, "a cavity left solid for no visible reason"),
+    Kind("drain-too-small", "mm", _ERROR, "a drain hole too narrow to drain anything"),
+    Kind("nothing-to-hollow", None, _INFO, "a part left solid for no visible reason"),
+    Kind("sealed-cavity", "mm3", ("info", "error"), "resin or powder that can never get out"),
+    Kind("suction-cup", "mm2", _WARNING, "layers that a vacuum tears as they leave the film"),
+    Kind("trapped-volume", "mm3", ("info", "warning"), "resin that leaks, or cures inside"),
     # standing
     Kind("contact-area", "mm2", _WARNING, "a tall print that comes loose from the bed"),
-    Kind("lean-out-of-reach", "deg", _ERROR, "hope that more ballast would help"),
+    Kind("lean-out-of-reach", "deg", _ERROR, "more ballast where only feet or pose help"),
     Kind("no-contact", "mm2", _ERROR, "a body that starts in mid-air"),
     Kind("simulated-fall", "deg", _ERROR, "a part that falls over by itself"),
-    Kind("simulated-tip", "deg", _ERROR, "a part that tips before the lean asked for"),
-    Kind("simulation-disagrees", "deg", _WARNING, "trust in a computed angle that is wrong"),
-    Kind("tilt", "deg", _ERROR, "a figure that falls over"),
+    Kind("simulated-tip", "deg", _ERROR, "a part that tips at less than the lean"),
+    Kind("simulation-disagrees", "deg", _WARNING, "a computed tilt angle that is wrong"),
+    Kind("tilt", "deg", _ERROR, "a part that falls over"),
     # the print, measured in its G-code
     Kind("another-print", None, _WARNING, "a comparison with the wrong part"),
-    Kind("filament-count", "mm3", _WARNING, "trust in figures that the slicer counts otherwise"),
+    Kind("filament-count", "mm3", _WARNING, "figures that the slicer's own count contradicts"),
     Kind("filled-cavity", "mm3", _ERROR, "a cavity that the slicer prints solid"),
-    Kind("printed-centre-of-mass", "mm", _WARNING, "a print that balances elsewhere"),
-    Kind("printed-contact", "mm", _WARNING, "a foot that prints smaller than computed"),
+    Kind("printed-centre-of-mass", "mm", _WARNING, "a print that balances differently"),
+    Kind("printed-contact", "mm", _WARNING, "a support polygon smaller than computed"),
     Kind("printed-mass", "g", _WARNING, "a print heavier than computed"),
     Kind("printed-tilt", "deg", _ERROR, "a print that falls over"),
-    Kind("several-objects", None, _WARNING, "one figure for several prints"),
-    Kind("support-in-cavity", "mm3", _ERROR, "supports that no one can take out"),
-    # what a file leaves to its user
-    Kind("infill-estimated", None, _WARNING, "an estimate that is taken for a measurement"),
+    Kind("several-objects", None, _WARNING, "one set of figures for several objects"),
+    Kind("support-in-cavity", "mm3", _ERROR, "supports that no one can remove"),
+    # what the user of a file must know
+    Kind("infill-estimated", None, _WARNING, "an estimate taken for a measurement"),
     Kind("no-plugs", None, _INFO, "a search for a file that was not written"),
-    Kind("no-settings", None, _WARNING, "a print with other settings than computed"),
-    Kind("set-by-hand", None, _INFO, "a print with other settings than computed"),
+    Kind("no-settings", None, _WARNING, "a print with settings that were not computed for"),
+    Kind("set-by-hand", None, _INFO, "a print with settings that were not computed for"),
 )
 
 CATALOGUE: Mapping[str, Kind] = MappingProxyType({kind.id: kind for kind in _KINDS})
@@ -100,17 +100,17 @@ def finding(
     area_mm2: float | None = None,
     volume_mm3: float | None = None,
 ) -> Finding:
-    """A finding of a kind in the catalogue, with that kind's unit.
+    """Make a finding of a kind in the catalogue, with that kind's unit.
 
     Parameters
     ----------
     message : what is so, with its number;  fix : what to do about it.
-    severity : one of the kind's; may be left out where the kind has only one.
-    value, limit : in the kind's unit.  The rest as in :class:`printprep.types.Finding`.
+    severity : one that the kind can have; not needed where it can have only one.
+    value, limit : in the kind's unit.  The rest is as in :class:`printprep.types.Finding`.
 
     Raises
     ------
-    ValueError : the catalogue has no such kind, or the kind no such severity.
+    ValueError : the catalogue lacks that kind, or the kind cannot have that severity.
     """
     kind = CATALOGUE.get(kind_id)
     if kind is None:
@@ -118,7 +118,7 @@ def finding(
     if severity is None and len(kind.severities) == 1:
         severity = kind.severities[0]
     if severity not in kind.severities:
-        raise ValueError(f"{kind_id} is {' or '.join(kind.severities)}, not {severity}")
+        raise ValueError(f"{kind_id} must be {' or '.join(kind.severities)}, not {severity}")
     return Finding(
         rule=kind_id,
         severity=severity,

@@ -1,4 +1,4 @@
-"""Rule: the mesh is as fine as the layers."""
+"""Rule: facets deviate from a round shape by less than a layer."""
 
 from __future__ import annotations
 
@@ -17,42 +17,46 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# A bend sharper than this is an edge that is meant; one flatter is not seen.
+# A sharper bend is an edge that the model means to have; a flatter bend is invisible.
 _SHARPEST_DEG, _FLATTEST_DEG = 40.0, 1.0
-# What an eye sees where layers are finer.
-_SEEN_MM = 0.1
-# So much of the surface must be coarse, in so many facets: fewer are a shape with flat sides.
+# The least deviation that the eye sees, where layers are finer.
+_VISIBLE_MM = 0.1
+# This much of the surface must be coarse, in this many facets; less is a shape with flat sides.
 LEAST_SHARE = 0.1
 LEAST_FACETS = 12
 
 
 @rule("coarse-facets")
 def coarse_facets(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Tells that facets will be seen where the model means to be round.
+    """Tells that facets will be visible on a surface that is probably meant to be round.
 
     Between two facets of width w that bend by δ, a round surface would rise by w δ / 8 above the
-    chord; coarse is what misses by more than a layer, or than an eye sees.
+    chord.  A facet is coarse where it deviates by more than a layer, and by more than the eye sees.
     """
-    limit = max(profile.printer.layer_height_mm, _SEEN_MM)
-    miss, area, facet = _misses(*arrays(context.outside))
-    coarse = miss > limit
+    limit = max(profile.printer.layer_height_mm, _VISIBLE_MM)
+    deviation, area, facet = _deviations(*arrays(context.outside))
+    coarse = deviation > limit
     share = float(area[coarse].sum() / area.sum()) if len(area) else 0.0
     if share < LEAST_SHARE or len(np.unique(facet[coarse])) < LEAST_FACETS:
         return
-    worst = float(np.percentile(miss[coarse], 50))
+    typical = float(np.percentile(deviation[coarse], 50))
     yield finding(
         "coarse-facets",
-        f"{100 * share:.0f} % of its surface is coarser than the print: facets miss a round shape "
-        f"by {worst:.2g} mm and will be seen.",
-        "Export the model with a finer tolerance, if it is meant to be round.",
-        value=worst,
+        f"On {100 * share:.0f} % of the surface, facets deviate from a round shape by "
+        f"{typical:.2g} mm: they will be visible.",
+        "If the model is meant to be round, export it with a finer tolerance.",
+        value=typical,
         limit=limit,
         area_mm2=float(area[coarse].sum()),
     )
 
 
-def _misses(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
-    """(m,) how far each triangle misses a round surface, 0 where flat or sharp; area; facet."""
+def _deviations(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
+    """How far each triangle deviates from a round surface, its area, and its facet.
+
+    vertices : (n, 3) mm;  faces : (m, 3).
+    Returns (m,) deviation in mm, 0 where flat or sharp;  (m,) area in mm²;  (m,) facet index.
+    """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -68,9 +72,10 @@ def _misses(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
     bend = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", unit[a], unit[b]), -1, 1)))
     width = (doubled[a] + doubled[b]) / (2 * np.maximum(length, np.finfo(np.float64).tiny))
     round_ = (bend > _FLATTEST_DEG) & (bend < _SHARPEST_DEG)
-    miss = np.zeros(len(faces))
+    deviation = np.zeros(len(faces))
     for side in (a, b):
-        np.maximum.at(miss, side, np.where(round_, width * np.radians(bend) / 8, 0))
+        np.maximum.at(deviation, side, np.where(round_, width * np.radians(bend) / 8, 0))
     flat = bend <= _FLATTEST_DEG
     graph = coo_matrix((np.ones(flat.sum()), (a[flat], b[flat])), shape=(len(faces),) * 2)
-    return miss, doubled / 2, connected_components(graph, directed=False)[1].astype(np.int64)
+    facet = connected_components(graph, directed=False)[1].astype(np.int64)
+    return deviation, doubled / 2, facet

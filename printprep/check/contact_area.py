@@ -1,4 +1,4 @@
-"""Rule: the part holds on to the bed with enough of its first layer."""
+"""Rule: a tall part has enough contact with the bed."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# A foot smaller than this under something taller than that is knocked off by the nozzle.
+# The nozzle knocks off a part with less contact than this that is taller than that.
 LEAST_MM2 = 25.0
 TALL_MM = 20.0
 
 
 @rule("contact-area")
 def contact_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a tall print on a small foot from coming loose half way up.
+    """Prevents a tall print with little contact from coming loose while it prints.
 
-    Filament only: resin hangs on supports, powder holds what lies in it.
+    For filament only: a resin part hangs on supports, and powder holds the part in place.
     """
     area = context.stability.contact_area_mm2
     if not profile.traits.loosens_from_bed or context.stability.tilt_deg is None:
@@ -32,8 +32,9 @@ def contact_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     x, y = context.stability.support_polygon_mm.mean(axis=0).tolist()
     yield finding(
         "contact-area",
-        f"It is {context.size_mm[2]:.0f} mm tall and touches the bed with {area:.1f} mm² only.",
-        "Print it with a brim, or give it a base (hollow --base always).",
+        f"The part is {context.size_mm[2]:.0f} mm tall and touches the bed with only "
+        f"{area:.1f} mm².",
+        "Print it with a brim, or give it a base (`printprep hollow --base always`).",
         value=area,
         limit=LEAST_MM2,
         at_mm=(x, y, 0.0),

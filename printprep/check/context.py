@@ -1,4 +1,4 @@
-"""What the rules look at: a part, whoever made it, taken apart into outside and cavities."""
+"""What the rules look at: a part from any source, separated into outside and cavities."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class CheckContext:
-    """A part under examination, on the bed, z up, in mm.
+    """The part to check, on the bed, z up, in mm.
 
     part : the whole part as it is or will be written (float32 coordinates, ``quantized``).
-    outside : what walls are measured to: for a part of ours the model with its base and the voids
-    it already had, for a file its outer shells.
+    outside : the surface that walls are measured to: for a part that printprep made, the model with
+    its base and the voids it already had; for a file, its outer shells.
     cavities : positive solids, disjoint from the material.
-    stability : how it stands;  lean : what it is asked to stand.
-    repair : what it took to make a solid of the file.
-    hollowed : True for a part of ours, False for a file as it came.
-    infilled : True for a part of ours whose inside is the slicer's infill, and has no cavity.
-    reachable_deg : the largest lean any filling reaches, None where the lean asked for is feasible.
-    advice : what would make it feasible, with ``reachable_deg``.
-    drainage : how it drains, None where no drains were asked for.
-    raw : a file's own triangles, as they were read and placed; None for a part of ours.
+    stability : how the part stands;  lean : the lean at which it should stand.
+    repair : how the file was made into a solid.
+    hollowed : True for a part that printprep made, False for a file as it came.
+    infilled : True for a part that printprep made for the slicer's infill: it has no cavity.
+    reachable_deg : the largest lean any filling reaches, None where the requested lean is feasible.
+    advice : what would make the lean feasible; it comes with ``reachable_deg``.
+    drainage : how the part drains, None where no drains were requested.
+    raw : the triangles of a file as read and placed; None for a part that printprep made.
 
-    What several rules ask for is measured once.
+    What several rules need is measured once.
     """
 
     part: Manifold
@@ -57,44 +57,44 @@ class CheckContext:
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
-        """Extents along x, y, z."""
+        """Extents along x, y, z in mm."""
         x0, y0, z0, x1, y1, z1 = self.part.bounding_box()
         return x1 - x0, y1 - y0, z1 - z0
 
     @cached_property
     def wall(self) -> Wall | None:
-        """The thinnest wall between cavities and outside, None without a cavity; measured once."""
+        """The thinnest wall between cavities and outside, None without a cavity."""
         return wall_min_mm(self)
 
     @cached_property
     def self_intersections(self) -> SelfIntersections | None:
-        """Where the file's own triangles pass through each other, None where they do not."""
+        """Where the triangles of the file intersect each other, None if they do not."""
         from printprep.mesh.self_intersections import self_intersections
 
         found = None if self.raw is None else self_intersections(self.raw.vertices, self.raw.faces)
         return found if found is not None and len(found.edge) else None
 
     def thin_below(self, limit_mm: float) -> Thin:
-        """Where its material is thinner than a limit."""
+        """Where the material is thinner than a limit."""
         from printprep.thickness import thin_places
 
         return self._kept("thin", limit_mm, lambda: thin_places(self.part, limit_mm))
 
     def narrow_below(self, limit_mm: float) -> Thin:
-        """Where the space outside its material is narrower than a limit."""
+        """Where the space outside the part is narrower than a limit."""
         from printprep.thickness import gap_places
 
         return self._kept("narrow", limit_mm, lambda: gap_places(self.outside, limit_mm))
 
     def pockets(self, diameter_mm: float) -> tuple[Pocket, ...]:
-        """What a ball of this diameter cannot leave."""
+        """The spaces that a ball of this diameter cannot leave."""
         from printprep.drainage.trapped import trapped
 
         return self._kept("pockets", diameter_mm, lambda: trapped(self.part, diameter_mm))
 
     @cached_property
     def cups(self) -> tuple[Cup, ...]:
-        """What is shut toward the plate while it prints."""
+        """The suction cups that form while the part prints."""
         from printprep.drainage.trapped import suction_cups
 
         return suction_cups(self.part)
@@ -114,9 +114,9 @@ class CheckContext:
 def context_of_solid(
     part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
 ) -> CheckContext:
-    """Any solid as a subject: its shells of negative volume bound cavities, the rest is outside.
+    """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside.
 
-    A loose piece inside a cavity is part of neither: it takes room from the cavity it lies in.
+    A loose piece inside a cavity belongs to neither; its volume is subtracted from the cavity.
     """
     solids, voids = shells(part)
     outer, rest = [], list(voids)

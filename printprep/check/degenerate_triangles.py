@@ -1,4 +1,4 @@
-"""Rule: the file's triangles have an area."""
+"""Rule: the triangles of the file have an area."""
 
 from __future__ import annotations
 
@@ -8,22 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# Height below which a triangle faces nowhere in single precision, as a share of the size.
+# Below this height, as a share of the size, a triangle has no normal in single precision.
 _FLAT = float(np.finfo(np.float32).eps)
-# Every program makes a few; one in so many is a fault of the file.
+# Every program makes a few; from this share on, it is a fault of the file.
 LEAST_SHARE = 0.001
 
 
 @rule("degenerate-triangles")
 def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Tells of triangles without an area, which face nowhere and which programs drop or keep."""
+    """Tells of triangles without area, which some programs drop and others keep."""
     del profile
     raw = context.raw
     if raw is None:
@@ -37,12 +39,13 @@ def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Fi
     flat = np.flatnonzero(doubled <= _FLAT * size * sides.max(axis=1))
     if len(flat) < LEAST_SHARE * len(raw.faces) or len(flat) == 0:
         return
-    x, y, z = corners[flat[0]].mean(axis=0).tolist()
     yield finding(
         "degenerate-triangles",
-        f"{len(flat)} of its {len(raw.faces)} triangles have no area.",
-        "Most programs drop them; merge close vertices where the model was made.",
+        f"{len(flat)} of {counted(len(raw.faces), 'triangle')} "
+        f"{'has' if len(flat) == 1 else 'have'} no area.",
+        "Merge close vertices in the program that made the model; most programs drop such "
+        "triangles.",
         value=float(len(flat)),
         limit=LEAST_SHARE * len(raw.faces),
-        at_mm=(x, y, z),
+        at_mm=mean_point(corners[flat[0]]),
     )

@@ -1,4 +1,4 @@
-"""Rule: holes let out what they are there for."""
+"""Rule: drain holes are wide enough to drain."""
 
 from __future__ import annotations
 
@@ -16,27 +16,33 @@ if TYPE_CHECKING:
 
 @rule("drain-too-small")
 def drain_too_small(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents holes through which nothing runs: too narrow themselves, or behind a narrow neck.
+    """Prevents drain holes that do not drain: too narrow, or behind a narrow neck.
 
-    The widest ball that gets out of a space, by any way, is compared with the profile's drain.
+    The widest ball that gets out of a space, by any way, is compared with the profile's drain hole.
     """
     diameter = profile.drain.diameter_mm
     if not profile.traits.must_drain or diameter is None:
         return
-    found = [pocket for pocket in context.pockets(diameter) if pocket.kind == "narrow"]
-    if not found:
+    narrow = [pocket for pocket in context.pockets(diameter) if pocket.kind == "narrow"]
+    if not narrow:
         return
-    total = sum(pocket.volume_mm3 for pocket in found)
-    worst = max(found, key=lambda pocket: pocket.volume_mm3)
-    spaces = "A space has" if len(found) == 1 else f"{len(found)} spaces have"
-    width = worst.way_out_mm or 0.0
+    total = sum(pocket.volume_mm3 for pocket in narrow)
+    largest = max(narrow, key=lambda pocket: pocket.volume_mm3)
+    width = largest.way_out_mm or 0.0
+    holds = f"{total / 1000:.3g} cm³ of {profile.traits.cavity_holds}"
+    if len(narrow) == 1:
+        message = f"A space that holds {holds} has a way out only {width:.1f} mm wide"
+    else:
+        message = (
+            f"{len(narrow)} spaces that hold {holds} have ways out that are too narrow, the "
+            f"largest space one of {width:.1f} mm"
+        )
     yield finding(
         "drain-too-small",
-        f"{spaces} no way out {diameter:g} mm wide: {total / 1000:.3g} cm³ of "
-        f"{profile.traits.cavity_holds} stay inside; the largest space opens {width:.1f} mm wide.",
-        f"Drill its hole, or the neck behind it, to {diameter:g} mm.",
+        f"{message}; a drain hole should be {diameter:g} mm wide.",
+        f"Widen the hole, or the neck behind it, to {diameter:g} mm.",
         value=width,
         limit=diameter,
-        at_mm=worst.place_mm,
+        at_mm=largest.place_mm,
         volume_mm3=total,
     )

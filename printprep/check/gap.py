@@ -1,4 +1,4 @@
-"""Rule: what is meant to stay apart is far enough apart."""
+"""Rule: gaps are wide enough to print open."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
 
 TOLERANCE_MM = 0.01
-# Two sides of a gap this small are a fold.
+# A gap with less surface than this is a fold.
 LEAST_MM2 = 5.0
 # Places closer than this are one gap.
 _LINK_MM = 2.0
-# A gap is about as wide everywhere: a tenth of it may be narrower than this share of its median.
-# In a crease, or under a ball on a plate, the tenth has a fifth of the median or less.
+# A gap is about equally wide everywhere: the narrowest tenth of it is at least this share of the
+# median wide.  In a crease, or under a ball on a plate, it is a fifth of the median or less.
 _EVEN = 0.5
 
 
 @rule("gap")
 def gap(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Tells of surfaces that may grow together: a hinge that sticks, letters that fill up.
+    """Tells of surfaces that may fuse together: a hinge that sticks, letters that fill up.
 
-    Sides that are nearly parallel and stay apart; where surfaces meet in a crease nothing is lost.
+    Two sides form a gap where they are nearly parallel and stay apart; a crease is not a gap.
     """
     limit = profile.min_gap_mm
     if limit is None:
@@ -47,9 +47,9 @@ def gap(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     least, place = narrow.thinnest
     yield finding(
         "gap",
-        f"A gap of {least:.2f} mm may print closed: the profile asks for {limit:g} mm "
-        f"({total:.0f} mm² of its sides).",
-        "Widen the gap, or join what it parts.",
+        f"A gap of {least:.2f} mm may print closed; it should be {limit:g} mm wide "
+        f"({total:.0f} mm² of surface).",
+        "Widen the gap, or join its two sides.",
         value=least,
         limit=limit,
         at_mm=place,

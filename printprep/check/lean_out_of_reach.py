@@ -1,4 +1,4 @@
-"""Rule: the lean asked for is one that some filling of the model reaches."""
+"""Rule: some filling of the model stands at the requested lean."""
 
 from __future__ import annotations
 
@@ -17,24 +17,27 @@ if TYPE_CHECKING:
 
 @rule("lean-out-of-reach")
 def lean_out_of_reach(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents the belief that more ballast would help where only feet or pose can.
+    """Prevents attempts with more ballast where only larger feet or another pose help.
 
-    Near the largest lean that any filling reaches the mass explodes, so the part is solved for 0.9
-    of it; where even upright is out of reach, no filling helps and the lightest shell is written.
+    Close to the largest lean that any filling reaches, the mass grows without limit, so the part is
+    solved for 0.9 of that lean.  Where no filling stands upright, the lightest shell is written.
     """
+    del profile
     reachable = context.reachable_deg
     if reachable is None:
         return
     if reachable > 0:
         message = (
-            f"A lean of {context.lean} is out of reach: no filling of this model stands "
-            f"beyond {reachable:.1f}°"
+            f"A lean of {context.lean} is out of reach: no filling of this model stands beyond "
+            f"{reachable:.1f}°"
         )
         tilt = tilt_toward(context.stability, context.lean)
-        message += "." if tilt is None else f"; this part stands to {tilt:.1f}°."
+        message += "." if tilt is None else f"; this part tips over at {tilt:.1f}°."
     else:
-        message = "No filling makes it stand: its weight lies outside its feet whatever is inside."
-    del profile
+        message = (
+            "No filling makes the part stand: whatever fills it, its centre of mass lies outside "
+            "its support polygon."
+        )
     yield finding(
         "lean-out-of-reach",
         message,
@@ -46,7 +49,7 @@ def lean_out_of_reach(context: CheckContext, profile: Profile) -> Iterator[Findi
 
 
 def _ways_out(advice: Advice | None) -> str:
-    """What would help, with figures where they are known."""
+    """What would make it stand, with figures where they are known."""
     ways = []
     if advice is not None and advice.growth_mm is not None:
         ways.append(
@@ -55,9 +58,9 @@ def _ways_out(advice: Advice | None) -> str:
         )
     if advice is not None and advice.poses_deg:
         ways.append(
-            f"a pose it stands in by itself (--pose 1: to {advice.poses_deg[0]:.0f}°, solid; "
-            f"{len(advice.poses_deg)} known)"
+            f"one of its {len(advice.poses_deg)} stable poses (--pose 1 stands to "
+            f"{advice.poses_deg[0]:.0f}° when solid)"
         )
     ways.append("another axis up (--up)")
-    ways.append("a smaller --lean")
-    return f"What helps: {'; '.join(ways)}."
+    ways.append("a smaller lean (--lean)")
+    return f"Choose one: {'; '.join(ways)}."

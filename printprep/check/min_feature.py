@@ -1,4 +1,4 @@
-"""Rule: pins and rods are as thick as the profile asks for."""
+"""Rule: pins and rods are at least as thick as the profile's minimum feature."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# Less surface than this is a tip, and tips are meant to end.
+# Less surface than this is a tip, which is meant to be thin.
 LEAST_MM2 = 5.0
 
 
@@ -22,7 +22,7 @@ LEAST_MM2 = 5.0
 def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a pin or a rod that breaks off, or that a slicer leaves out.
 
-    A member counts where it is thinner than the profile's minimum feature both ways across.
+    A place counts where it is thinner than the profile's minimum feature in both directions across.
     """
     limit = FACETED * profile.min_feature_mm
     thin = context.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
@@ -32,9 +32,9 @@ def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     least, place = rods.thinnest
     yield finding(
         "min-feature",
-        f"A pin or rod is {least:.2f} mm thick, the profile asks for {profile.min_feature_mm:g} mm "
+        f"A pin or rod is {least:.2f} mm thick; it should be {profile.min_feature_mm:g} mm "
         f"({rods.total_mm2:.0f} mm² of surface).",
-        "Thicken it, or scale the model up (--size).",
+        "Make it thicker, or scale the model up (--size).",
         value=least,
         limit=profile.min_feature_mm,
         at_mm=place,

@@ -16,15 +16,16 @@ if TYPE_CHECKING:
 
 @rule("no-contact")
 def no_contact(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a first layer that is empty, or a body that starts in mid-air."""
+    """Prevents an empty first layer, and a body that starts in mid-air."""
     if context.stability.tilt_deg is not None:
         return
     x, y, z = context.stability.centre_of_mass_mm
     layer = profile.printer.first_layer_mm
     yield finding(
         "no-contact",
-        f"A body touches the bed nowhere in the first layer ({layer:g} mm): it cannot stand.",
-        "Seat its feet (--base always), turn it (--up), or join the body to the rest.",
+        f"A body does not touch the bed in the first layer ({layer:g} mm): it cannot stand.",
+        "Seat its feet (`printprep hollow --base always`), turn the part (--up), or join the body "
+        "to the others.",
         value=0.0,
         at_mm=(x, y, z),
     )

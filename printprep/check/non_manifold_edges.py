@@ -1,4 +1,4 @@
-"""Rule: two of the file's triangles at every edge."""
+"""Rule: two triangles of the file meet at every edge."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
 @rule("non-manifold-edges")
 def non_manifold_edges(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents programs from parting the surface in different ways where it touches itself."""
+    """Prevents programs from separating bodies differently where they touch along an edge."""
     del profile
     if context.raw is None:
         return
@@ -25,12 +27,12 @@ def non_manifold_edges(context: CheckContext, profile: Profile) -> Iterator[Find
     crowded = ends[(count > 2) & (count % 2 == 0)]
     if len(crowded) == 0:
         return
-    x, y, z = context.raw.vertices[crowded[0]].mean(axis=0).tolist()
     yield finding(
         "non-manifold-edges",
-        f"At {len(crowded)} edges more than two triangles meet: bodies touch there along a line.",
-        "Part them or let them overlap; `printprep hollow` does one or the other.",
+        f"More than two triangles meet at {counted(len(crowded), 'edge')}: bodies touch there "
+        "along a line.",
+        "Separate the bodies, or let them overlap; `printprep hollow` does either.",
         value=float(len(crowded)),
         limit=0.0,
-        at_mm=(x, y, z),
+        at_mm=mean_point(context.raw.vertices[crowded[0]]),
     )

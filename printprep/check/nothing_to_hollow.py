@@ -1,4 +1,4 @@
-"""Rule: the part that was to be hollowed is hollow."""
+"""Rule: a hollowed part has a cavity."""
 
 from __future__ import annotations
 
@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 
 @rule("nothing-to-hollow")
 def nothing_to_hollow(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents the surprise of a part that weighs what it did before."""
+    """Explains why a part has no cavity."""
     if not context.hollowed or context.infilled or context.cavities:
         return
     yield finding(
         "nothing-to-hollow",
-        "There is no cavity: the model is thin everywhere, or all of it is needed to stand. "
-        "The part is solid.",
-        f"A larger model (--size) or a thinner wall than {profile.wall_mm:g} mm (--wall) "
-        "leaves more room.",
+        "The part is solid: the model is thin everywhere, or all of it is needed to stand.",
+        f"Scale the model up (--size), or choose a wall thinner than {profile.wall_mm:g} mm "
+        "(--wall).",
     )

@@ -1,4 +1,4 @@
-"""Rule: the file's triangles close."""
+"""Rule: the triangles of the file form closed surfaces."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.weld import shared_edges
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
 @rule("open-surface")
 def open_surface(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a slicer from closing holes its own way, or from dropping whole layers."""
+    """Prevents a slicer from closing holes in its own way, or from dropping whole layers."""
     del profile
     if context.raw is None:
         return
@@ -25,12 +27,12 @@ def open_surface(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     open_ = ends[count % 2 == 1]
     if len(open_) == 0:
         return
-    x, y, z = context.raw.vertices[open_[0]].mean(axis=0).tolist()
     yield finding(
         "open-surface",
-        f"The surface is open: {len(open_)} edges belong to an odd number of triangles.",
-        "`printprep hollow` closes it, or repair it where it was made.",
+        f"The surface is open at {counted(len(open_), 'edge')}: an odd number of triangles meets "
+        "there.",
+        "Close it with `printprep hollow`, or in the program that made the model.",
         value=float(len(open_)),
         limit=0.0,
-        at_mm=(x, y, z),
+        at_mm=mean_point(context.raw.vertices[open_[0]]),
     )

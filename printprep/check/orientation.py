@@ -1,4 +1,4 @@
-"""Rule: the file's triangles face outward."""
+"""Rule: the triangles of the file face outward."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.orient import right_side_out
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
 @rule("orientation")
 def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a solid from being taken for a void where triangles face inward."""
+    """Prevents a slicer from taking material for a void where triangles face inward."""
     del profile
     raw = context.raw
     if raw is None:
@@ -28,13 +30,13 @@ def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     turned = np.flatnonzero((outward != raw.faces).any(axis=1))
     if len(turned) == 0:
         return
-    x, y, z = raw.vertices[raw.faces[turned[0]]].mean(axis=0).tolist()
     yield finding(
         "orientation",
-        f"{len(turned)} of its {len(raw.faces)} triangles face inward: a slicer may take material "
-        "for empty space.",
-        "Turn them where the model was made; `printprep hollow` does too.",
+        f"{len(turned)} of {counted(len(raw.faces), 'triangle')} "
+        f"{'faces' if len(turned) == 1 else 'face'} inward: a slicer may take material for empty "
+        "space.",
+        "Turn them with `printprep hollow`, or in the program that made the model.",
         value=float(len(turned)),
         limit=0.0,
-        at_mm=(x, y, z),
+        at_mm=mean_point(raw.vertices[raw.faces[turned[0]]]),
     )

@@ -1,4 +1,4 @@
-"""Rule: how much of the surface hangs over."""
+"""Rule: how much of the surface overhangs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.measure import arrays
 from printprep.types import Finding
@@ -17,18 +18,18 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# What one support post holds anyway.
+# Less than this is too little to report.
 LEAST_MM2 = 10.0
-# A facet of exactly the steepest overhang counts as printable after float32.
+# A facet at exactly the profile's overhang still counts as printable after rounding to float32.
 _SLACK_DEG = 0.01
 
 
 @rule("overhang-area")
 def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Tells what supports will be needed, outside and in cavities that are open.
+    """Tells how much surface needs supports, outside and in open cavities.
 
-    Surface that leans outward by more than the profile's overhang, above the first layer.  Powder
-    carries everything; ceilings of sealed cavities have a rule of their own.
+    It counts surface above the first layer that leans outward by more than the profile's overhang.
+    Powder carries every overhang; ceilings of sealed cavities have their own rule.
     """
     if profile.overhang_deg >= 90:
         return
@@ -43,14 +44,13 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     if area < LEAST_MM2:
         return
     largest = int(np.argmax(np.where(hangs, doubled, 0)))
-    x, y, z = corners[largest].mean(axis=0).tolist()
     yield finding(
         "overhang-area",
-        f"{area:.0f} mm² of its surface hang over by more than {profile.overhang_deg:g}°: a slicer "
-        "puts supports there.",
-        "Another axis up (--up) or another pose (--pose) may need less.",
+        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}° : a slicer "
+        "adds supports there.",
+        "Try another axis up (--up), or another pose (`printprep hollow --pose`).",
         value=area,
         limit=LEAST_MM2,
-        at_mm=(x, y, z),
+        at_mm=mean_point(corners[largest]),
         area_mm2=area,
     )

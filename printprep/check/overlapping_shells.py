@@ -1,4 +1,4 @@
-"""Rule: the file's shells do not reach into each other."""
+"""Rule: the shells of the file do not overlap."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -16,18 +18,17 @@ if TYPE_CHECKING:
 
 @rule("overlapping-shells")
 def overlapping_shells(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Tells that shells overlap: slicers print what they cover together, other programs differ."""
+    """Tells that shells overlap: slicers print their union, other programs may not."""
     del profile
     self_intersections = context.self_intersections
     if self_intersections is None or not self_intersections.apart.any():
         return
     at = self_intersections.at_mm[self_intersections.apart]
-    x, y, z = at[0].tolist()
     yield finding(
         "overlapping-shells",
-        f"Separate shells overlap at {len(at)} edges: a slicer prints what they cover together.",
-        "Unite them where they were made; `printprep hollow` does too.",
+        f"Separate shells cross at {counted(len(at), 'edge')}: a slicer prints their union.",
+        "Unite them with `printprep hollow`, or in the program that made the model.",
         value=float(len(at)),
         limit=0.0,
-        at_mm=(x, y, z),
+        at_mm=mean_point(at[:1]),
     )

@@ -1,4 +1,4 @@
-"""The registry of rules: a stable id, a function, and one order for what they find."""
+"""The registry of rules: a stable id, a function, and one order for the findings."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ Rule = Callable[["CheckContext", "Profile"], Iterable[Finding]]
 
 _RANK: Mapping[Severity, int] = MappingProxyType({"info": 0, "warning": 1, "error": 2})
 RULES: dict[str, Rule] = {}
-"""Every rule by its id; :func:`rule` puts one in."""
+"""Every rule by its id; :func:`rule` adds one."""
 
 
 def rule(rule_id: str) -> Callable[[Rule], Rule]:
     """Register a rule under an id that never changes: scripts filter on it.
 
-    The rule's docstring says which mistake it prevents.
+    The first sentence of the rule's docstring says what it prevents, tells or explains;
+    docs/checks.md quotes it.
     """
 
     def register(function: Rule) -> Rule:
@@ -38,16 +39,16 @@ def rule(rule_id: str) -> Callable[[Rule], Rule]:
 
 
 def run_rules(context: CheckContext, profile: Profile) -> tuple[Finding, ...]:
-    """What all rules find, the worst first, then by rule id, then as the rule gave them."""
-    found = [item for _, check in sorted(RULES.items()) for item in check(context, profile)]
-    return sorted_findings(found)
+    """The findings of all rules: the worst first, then by rule id, then in the rule's order."""
+    findings = [item for _, check in sorted(RULES.items()) for item in check(context, profile)]
+    return sorted_findings(findings)
 
 
 def sorted_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """The worst first, then by rule id; what one rule found keeps its order."""
+    """The worst first, then by rule id; the findings of one rule keep their order."""
     return tuple(sorted(findings, key=lambda item: (-_RANK[item.severity], item.rule)))
 
 
 def at_or_above(findings: Iterable[Finding], severity: Severity) -> tuple[Finding, ...]:
-    """Those at least as severe as ``severity``, in their order."""
+    """The findings at least as severe as ``severity``, in their order."""
     return tuple(item for item in findings if _RANK[item.severity] >= _RANK[severity])

@@ -1,4 +1,4 @@
-"""Rule: the file was a solid before anything was done to it."""
+"""Rule: the file is a solid without a repair."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# What a printed layer hides.
+# A printed layer hides less than this.
 _MOVED_LIMIT_MM = 0.1
 
 
 @rule("repaired")
 def repaired(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a slicer from guessing what an open or tangled surface means.
+    """Prevents a slicer from guessing what is inside an open or self-intersecting surface.
 
-    On a file as it came it tells what was judged instead of it: warning where holes were closed or
-    the surface remade, information where only shells were joined or turned; what is wrong with the
-    file itself has rules of its own.  On a part of ours the repair is done, and worth a word only
-    where it moved the surface by more than a layer hides.
+    For a file as it came, it tells that a repaired solid was checked instead: a warning where holes
+    were closed or the surface was remeshed, information where shells were only united or turned.
+    Other rules name the faults of the file itself.  For a part that printprep made, it tells of a
+    repair only where the surface moved by more than a layer hides.
     """
     del profile
     repair = context.repair
     if repair.rung == "as-is" or (context.hollowed and repair.moved_max_mm <= _MOVED_LIMIT_MM):
         return
-    moved_mm = round(repair.moved_max_mm, 4)  # below that it is arithmetic, not repair
-    done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
-    moved = f"the surface moved by up to {moved_mm:.2g} mm" if moved_mm else "nothing moved"
+    moved_mm = round(repair.moved_max_mm, 4)  # less is rounding, not repair
+    actions = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
+    moved = f"moved its surface by up to {moved_mm:.2g} mm" if moved_mm else "did not move it"
     if context.hollowed:
         severity: Severity = "warning"
-        message = f"The model had to be repaired, and {moved} ({done})."
-        fix = "Look at the part before printing it, or repair the model where it was made."
+        message = f"The model was repaired, which {moved} ({actions})."
+        fix = "Look at the part before printing it, or repair the model in the program it is from."
     else:
         severity = "info" if repair.rung == "union" else "warning"
-        message = f"The file was judged as a solid; making it one took: {done} ({moved})."
-        fix = "`printprep hollow` does the same repair and writes a sound part."
+        message = f"The file was repaired before it was checked, which {moved} ({actions})."
+        fix = "`printprep hollow` does the same repair and writes the repaired part."
     yield finding(
         "repaired",
         message,

@@ -1,4 +1,4 @@
-"""Rule: what is shut inside a part with no way out."""
+"""Rule: cavities without a way out."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.measure import shells
 from printprep.types import Finding
@@ -19,21 +20,22 @@ if TYPE_CHECKING:
 
 @rule("sealed-cavity")
 def sealed_cavity(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a part that carries its weight in resin or powder for ever, or bursts in the cure.
+    """Prevents a part that keeps resin or powder inside for good, or bursts as the resin cures.
 
-    Counts every void, the model's own too.  With filament only air stays inside: information.
+    It counts every void, also those of the model.  With filament only air stays inside, so it is
+    information.
     """
     _, voids = shells(context.part)
     if not voids:
         return
     largest = max(voids, key=lambda void: void.volume())
-    x, y, z = np.reshape(largest.bounding_box(), (2, 3)).mean(axis=0).tolist()
+    middle = mean_point(np.reshape(largest.bounding_box(), (2, 3)))
     total_mm3 = float(sum(void.volume() for void in voids))
     count = "A sealed cavity holds" if len(voids) == 1 else f"{len(voids)} sealed cavities hold"
     harmless = not profile.traits.must_drain
     fix = (
-        "Drill a drain and a vent into each (`printprep hollow` does, given the solid model), or"
-        " print it with a process that leaves only air."
+        "Drill a drain hole and a vent into each, or run `printprep hollow` on the solid model: it "
+        "adds them."
     )
     yield finding(
         "sealed-cavity",
@@ -42,5 +44,5 @@ def sealed_cavity(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         severity="info" if harmless else "error",
         value=total_mm3,
         limit=None if harmless else 0.0,
-        at_mm=(x, y, z),
+        at_mm=middle,
     )

@@ -1,4 +1,4 @@
-"""Rule: no shell of the file passes through itself."""
+"""Rule: no shell of the file intersects itself."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
+from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.types import Finding
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
@@ -16,18 +18,18 @@ if TYPE_CHECKING:
 
 @rule("self-intersection")
 def self_intersection(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents slicers from disagreeing on what is inside where a surface passes through itself."""
+    """Prevents programs from disagreeing on what is inside where a surface intersects itself."""
     del profile
     self_intersections = context.self_intersections
     if self_intersections is None or self_intersections.apart.all():
         return
     at = self_intersections.at_mm[~self_intersections.apart]
-    x, y, z = at[0].tolist()
     yield finding(
         "self-intersection",
-        f"The surface passes through itself at {len(at)} edges: programs differ on what is inside.",
-        "Unite it with itself in a modelling program: hollowing keeps what changes little.",
+        f"The surface intersects itself at {counted(len(at), 'edge')}: programs disagree on what "
+        "is inside.",
+        "Unite it with itself in a modelling program; `printprep hollow` may leave it as it is.",
         value=float(len(at)),
         limit=0.0,
-        at_mm=(x, y, z),
+        at_mm=mean_point(at[:1]),
     )

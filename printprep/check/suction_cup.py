@@ -1,4 +1,4 @@
-"""Rule: nothing sucks at the film while the part is printed in resin."""
+"""Rule: no suction cup forms while the part is printed in resin."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# A vacuum of one bar on this area pulls with 10 N, as a layer of some square centimetres does.
+# A vacuum of one bar on this area pulls with 10 N, as a layer of a few square centimetres does.
 LEAST_MM2 = 100.0
 
 
 @rule("suction-cup")
 def suction_cup(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents layers that tear off, or film that wears, where each peel pulls against a vacuum.
+    """Prevents torn layers and a worn film where each peel pulls against a vacuum.
 
-    A cup is an empty region of a layer with no way to the outside through the layers before it; the
-    plate shuts what opens to it only.
+    A suction cup is an empty region of a layer with no way to the outside through the layers before
+    it.  The plate closes whatever opens only toward it.
     """
     if not profile.traits.peels_from_film:
         return
@@ -31,13 +31,15 @@ def suction_cup(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     widest = max(cups, key=lambda cup: cup.area_mm2)
     total = sum(cup.volume_mm3 for cup in cups)
-    until = f"opens at z = {widest.to_mm:.1f} mm" if widest.opens else "is closed over for good"
-    many = f" ({len(cups)} such cups, the widest)" if len(cups) > 1 else ""
+    if len(cups) == 1:
+        cup = f"A suction cup of {widest.area_mm2:.0f} mm²"
+    else:
+        cup = f"The widest of {len(cups)} suction cups, {widest.area_mm2:.0f} mm²,"
+    end = "" if widest.opens else ", where a ceiling seals it"
     yield finding(
         "suction-cup",
-        f"A cup of {widest.area_mm2:.0f} mm² is shut toward the plate from "
-        f"z = {widest.from_mm:.1f} mm until it {until}, and sucks at the film{many}.",
-        "Vent it with a hole at its end toward the plate, or turn the part.",
+        f"{cup} forms from z = {widest.from_mm:.1f} mm to z = {widest.to_mm:.1f} mm{end}.",
+        "Add a vent at its end toward the plate, or turn the part.",
         value=widest.area_mm2,
         limit=LEAST_MM2,
         at_mm=widest.place_mm,

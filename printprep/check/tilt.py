@@ -1,4 +1,4 @@
-"""Rule: the part stands at the lean it is asked to stand."""
+"""Rule: the part stands at the requested lean."""
 
 from __future__ import annotations
 
@@ -17,27 +17,28 @@ if TYPE_CHECKING:
 
 @rule("tilt")
 def tilt(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a figure that falls over on the shelf, or on the bed while it prints.
+    """Prevents a part that falls over on the shelf, or on the bed while it prints.
 
-    Silent where another rule names the cause: no contact at all, or a lean out of reach.
+    It is silent where another rule names the cause: no contact, or a lean that is out of reach.
     """
     del profile
     tilt_deg = tilt_toward(context.stability, context.lean)
     if tilt_deg is None or context.reachable_deg is not None or tilt_deg >= context.lean.angle_deg:
         return
     if tilt_deg < 0:
-        message = f"It tips over by itself ({tilt_deg:.1f}°); the lean asked for is"
+        message = f"The part tips over by itself (tilt angle {tilt_deg:.1f}°)"
     else:
-        message = f"It tips over at a lean of {tilt_deg:.1f}°; the lean asked for is"
+        message = f"The part tips over at {tilt_deg:.1f}°"
     if context.hollowed:
-        fix = "Give it a base (--base always) or another pose (--up)."
+        fix = "Give it a base (--base always), or another pose (--pose, --up)."
     else:
         fix = (
-            "Hollow the solid model with printprep, give it a larger base, or another pose (--up)."
+            "Hollow the solid model with printprep, or give it a larger base or another pose "
+            "(--up)."
         )
     yield finding(
         "tilt",
-        f"{message} {context.lean}.",
+        f"{message}; it should stand at {context.lean}.",
         fix,
         value=tilt_deg,
         limit=context.lean.angle_deg,

@@ -1,4 +1,4 @@
-"""Rule: the model has the size of a thing."""
+"""Rule: the model is larger than a millimetre."""
 
 from __future__ import annotations
 
@@ -18,16 +18,15 @@ LEAST_SIDE_MM = 1.0
 
 @rule("tiny-model")
 def tiny_model(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a file in metres, or without a unit, from printing as a crumb."""
+    """Prevents a file in metres, or without a unit, from printing far too small."""
     del profile
     side = max(context.size_mm)
     if side >= LEAST_SIDE_MM:
         return
     yield finding(
         "tiny-model",
-        f"The longest side is {side:.3g} mm: the file is hardly in millimetres.",
-        f"Name its unit (--units m makes it {1000 * side:.4g} mm), or its size "
-        "(--size 100, or --scale).",
+        f"The longest side is {side:.3g} mm: the file is probably not in millimetres.",
+        f"Name its unit (--units m makes it {1000 * side:.4g} mm) or its size (--size, --scale).",
         value=side,
         limit=LEAST_SIDE_MM,
     )

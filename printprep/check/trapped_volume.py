@@ -1,4 +1,4 @@
-"""Rule: resin runs out of the part as it stands."""
+"""Rule: resin runs out of the part while it stands."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ if TYPE_CHECKING:
 
 @rule("trapped-volume")
 def trapped_volume(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents resin that stays in a part with holes, and leaks for weeks or cures where it lies.
+    """Prevents resin that stays in a part despite its holes, and leaks for weeks or cures inside.
 
-    What does not run out of the part as it stands, through the ways out that it has; turning it is
-    enough.  A warning inside it, information in the open, as in a mug.  Sealed cavities and holes
-    that are too small have rules of their own.
+    It counts the pools that do not run out while the part stands; turning the part empties them.  A
+    pool is a warning inside the part, and information in the open, as in a mug.  Sealed cavities
+    and holes that are too small have their own rules.
     """
     diameter = profile.drain.diameter_mm
-    # Powder is shaken and blown out, whichever way the part stands.
+    # Powder is shaken and blown out, however the part stands.
     if not profile.traits.leaves_pools or diameter is None:
         return
     pools = [pocket for pocket in context.pockets(diameter) if pocket.kind == "pool"]
     for enclosed in (True, False):
-        found = [pocket for pocket in pools if pocket.enclosed is enclosed]
-        if found:
-            yield _pools(found, enclosed=enclosed)
+        alike = [pocket for pocket in pools if pocket.enclosed is enclosed]
+        if alike:
+            yield _pools_finding(alike, enclosed=enclosed)
 
 
-def _pools(found: list[Pocket], *, enclosed: bool) -> Finding:
-    total = sum(pocket.volume_mm3 for pocket in found)
-    largest = max(found, key=lambda pocket: pocket.volume_mm3)
-    where = "inside it" if enclosed else "in its hollows"
+def _pools_finding(pools: list[Pocket], *, enclosed: bool) -> Finding:
+    total = sum(pocket.volume_mm3 for pocket in pools)
+    largest = max(pools, key=lambda pocket: pocket.volume_mm3)
+    where = "inside the part" if enclosed else "in open hollows of the part"
     return finding(
         "trapped-volume",
-        f"As it stands {total / 1000:.3g} cm³ of resin stay {where}, the largest pool "
+        f"While the part stands, {total / 1000:.3g} cm³ of resin stay {where}; the largest pool is "
         f"{largest.depth_mm:.3g} mm deep.",
-        "Turn the part over before it is cured, or put a drain at the lowest place.",
+        "Turn the part over before it cures, or put a drain hole at the lowest place.",
         severity="warning" if enclosed else "info",
         value=total,
         limit=0.0,

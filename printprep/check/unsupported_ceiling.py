@@ -1,4 +1,4 @@
-"""Rule: ceilings of cavities that a slicer would fill with support, and islands inside them."""
+"""Rule: ceilings of cavities that a slicer would support, and islands inside cavities."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
-# Less than this, over all layers, is a few crumbs that bridge.
+# Less than this, over all layers, is a few specks that bridge.
 AREA_MM2 = 0.5
 
 
 @rule("unsupported-ceiling")
 def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a ceiling that sags into the cavity, or support shut in where no hand can reach.
+    """Prevents a ceiling that sags into the cavity, and supports that no one can remove.
 
-    By the slicer's own rule, layer by layer; its loose pieces, which print on air, count at once.
+    It applies the slicer's own rule for supports, layer by layer.  A single island is enough, since
+    it prints in mid-air.
     """
     if not profile.traits.ceilings_sag or not context.cavities:
         return
@@ -29,18 +30,18 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
     from printprep.overhang.limits import acceptance
     from printprep.overhang.rule import unsupported_ceilings
 
-    found = unsupported_ceilings(united(context.cavities), acceptance(profile))
-    worst = found.worst
-    if worst is None or (found.area_mm2 <= AREA_MM2 and not found.islands):
+    ceilings = unsupported_ceilings(united(context.cavities), acceptance(profile))
+    worst = ceilings.worst
+    if worst is None or (ceilings.area_mm2 <= AREA_MM2 and not ceilings.islands):
         return
-    count = "1 piece begins" if found.islands == 1 else f"{found.islands} pieces begin"
-    islands = f", {count} on air" if found.islands else ""
+    count = "1 island starts" if ceilings.islands == 1 else f"{ceilings.islands} islands start"
+    islands = f", and {count} in mid-air" if ceilings.islands else ""
     yield finding(
         "unsupported-ceiling",
-        f"Ceilings inside cavities overhang by {found.area_mm2:.1f} mm² over all layers{islands}; "
-        "a slicer prints support there, which stays inside.",
-        "Hollow it with supports of its own inside, as `printprep hollow` does for filament.",
-        value=found.area_mm2,
+        f"{ceilings.area_mm2:.1f} mm² of cavity ceilings, over all layers, are "
+        f"unsupported{islands}: a slicer prints supports there, which stay inside.",
+        "Hollow the solid model with `printprep hollow`, which adds vaults for filament.",
+        value=ceilings.area_mm2,
         limit=AREA_MM2,
         at_mm=worst.at_mm,
     )

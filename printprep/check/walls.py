@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Walled(Protocol):
-    """Anything with an outside and cavities: a Part, a Subject."""
+    """Anything with an outside and cavities: a Part or a CheckContext."""
 
     @property
     def outside(self) -> Manifold: ...
@@ -26,7 +26,7 @@ class Walled(Protocol):
 
 
 class Wall(NamedTuple):
-    """The thinnest wall: its thickness, and a place near its middle (x, y, z)."""
+    """The thinnest wall: its thickness, and a point (x, y, z) near its middle."""
 
     value_mm: float
     at_mm: tuple[float, float, float]
@@ -35,17 +35,17 @@ class Wall(NamedTuple):
 def wall_min_mm(part: Walled) -> Wall | None:
     """The thinnest wall between the cavities and the outside; None without a cavity.
 
-    The place comes from vertices and face centres of each surface against the other mesh.  The
-    thickness is then the exact least distance between the two triangle meshes, which two edges
-    that cross can make smaller than any vertex tells; 0 where a cavity breaks through.
+    The point comes from the vertices and face centres of each mesh and the nearest point of the
+    other.  The thickness is the exact least distance between the two triangle meshes: where two
+    edges cross, it is smaller than at any vertex.  It is 0 where a cavity breaks through.
     """
     if not part.cavities:
         return None
     cavity = united(part.cavities)
     outer, inner = arrays(part.outside), arrays(cavity)
-    there, back = _nearest(inner, outer), _nearest(outer, inner)
-    sampled, middle = min(there, back, key=lambda found: found[0])
-    # Beyond the outside, as a solid: the gap between it and the cavity is the wall.
+    outward, inward = _nearest(inner, outer), _nearest(outer, inner)
+    sampled, middle = min(outward, inward, key=lambda nearest: nearest[0])
+    # Everything beyond the outside, as a solid: the gap between it and the cavity is the wall.
     low, high = np.reshape(part.outside.bounding_box(), (2, 3))
     margin = 1.0 + float((high - low).max())
     beyond = _box(low - margin, high + margin) - part.outside
@@ -55,7 +55,10 @@ def wall_min_mm(part: Walled) -> Wall | None:
 
 
 def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float]:
-    """Least distance from vertices and face centres of one mesh to the other, and the midpoint."""
+    """Least distance in mm from vertices and face centres of one mesh to another; its midpoint.
+
+    of, to : (n, 3) vertices in mm and (m, 3) faces each.  The midpoint is (3,) mm.
+    """
     import igl
 
     vertices, faces = of
@@ -66,6 +69,7 @@ def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float
 
 
 def _box(low: Float, high: Float) -> Manifold:
+    """The box between two corners, (3,) mm each."""
     from manifold3d import Manifold
 
     return Manifold.cube((high - low).tolist()).translate(low.tolist())

@@ -1,4 +1,4 @@
-"""The command line: one file a command, each thin.  ``main`` is the installed program."""
+"""The command line, one thin file for each command.  ``main`` is the installed program."""
 
 from printprep.cli.run import main
 

@@ -1,4 +1,4 @@
-"""The ``printprep`` command: its subcommands by name, loaded when they are asked for."""
+"""The ``printprep`` command.  Its subcommands are loaded by name when they are needed."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _COMMANDS = {
 _EPILOG = """\b
 Exit codes:
   0    done (there may be findings)
-  1    a finding at or above --fail-on
-  2    usage: an option, profile or argument that cannot be meant
-  3    input: the file cannot be read, or is refused
-  4    geometry: the model cannot be made a solid
-  5    output: the file cannot be written there
+  1    a finding reached the --fail-on level
+  2    usage: an invalid option, argument or profile key
+  3    input: the file cannot be read, or is not accepted
+  4    geometry: the model cannot be made into a solid
+  5    output: the file cannot be written
   6    tool: a slicer is missing or failed
   70   a defect of printprep
   130  interrupted
@@ -44,9 +44,9 @@ Examples:
 
 
 class LazyGroup(click.Group):
-    """A group whose commands live in modules that are imported when needed.
+    """A group whose commands are in modules that are imported only when needed.
 
-    lazy : command name → module, which holds the command as ``command``, in the order of --help.
+    lazy : command name → module that holds the command as ``command``; in the order of --help.
     """
 
     def __init__(self, *args: Any, lazy: Mapping[str, str], **kwargs: Any) -> None:
@@ -78,8 +78,8 @@ class LazyGroup(click.Group):
 def printprep(ctx: click.Context) -> None:
     """Hollow a model for 3D printing.
 
-    The lightest part that stands at the lean you name, that your printer can print, in a file your
-    slicer prints as meant.
+    printprep makes the lightest part that still stands at the lean you choose and that your printer
+    can print, and writes it to a file for your slicer.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

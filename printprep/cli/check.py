@@ -1,4 +1,4 @@
-"""``printprep check``: the same rules on any file, whoever made it."""
+"""``printprep check``: run the rules on any file, whichever program made it."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def command(
     verbose: bool,
     **placement: Any,
 ) -> int:
-    """Check MODEL (STL, OBJ, PLY, 3MF or GLB) against a profile; nothing is written.
+    """Check MODEL (STL, OBJ, PLY, 3MF, GLB; or voxels: NPZ, NPY, PT) against a profile.
 
-    The file's own triangles, walls, pins and gaps, ceilings and overhangs, what is sealed inside or
-    does not run out, suction cups, tilt angle against --lean, contact with the bed, and whether the
-    printer can hold it.
+    It checks the triangles of the file, walls, pins and gaps, ceilings and overhangs, sealed
+    cavities, pools and suction cups, the tilt angle against --lean, contact with the bed, and
+    whether the part fits into the printer. No file is written.
     """
     from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
     from printprep.pipeline.check import check

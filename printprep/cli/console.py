@@ -1,4 +1,4 @@
-"""Where summaries and findings go: stdout for a person, stderr when only trouble is wanted."""
+"""Where summaries and findings go: to stdout, and with -q warnings and errors to stderr."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ WIDEST = 100
 
 
 def stdout_console() -> Console:
-    """A console that never guesses at markup or highlights, no wider than reads well."""
+    """A console without markup or highlighting, at most ``WIDEST`` columns wide."""
     from rich.console import Console
 
     console = Console(highlight=False, markup=False, emoji=False)
@@ -25,15 +25,15 @@ def stdout_console() -> Console:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """One JSON object on stdout."""
+    """Print one JSON object on stdout."""
     from printprep.output.numbers import to_text
 
     click.echo(to_text(data))
 
 
 def trouble_to_stderr(findings: Sequence[Finding]) -> None:
-    """Warnings and errors, a line each, for -q."""
+    """Print warnings and errors on stderr, one line each, as -q asks for."""
     for item in findings:
         if item.severity != "info":
-            way_out = f" {item.fix}" if item.fix else ""
-            click.echo(f"printprep: {item.severity}: {item.message}{way_out}", err=True)
+            fix = f" {item.fix}" if item.fix else ""
+            click.echo(f"printprep: {item.severity}: {item.message}{fix}", err=True)

@@ -1,4 +1,4 @@
-"""The options for drains: which go together, and what they change of the profile."""
+"""The drain options: which ones go together, and which profile keys they change."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ def drain_options(
 ) -> Mapping[str, object]:
     """The profile keys that --drains, --drain-diameter and --no-drains change.
 
-    Raises UsageError where they contradict each other.
+    Raises UsageError if they contradict each other.
     """
     if no_drains and count is not None:
-        raise UsageError("--drains and --no-drains exclude each other.", "Leave one out.")
+        raise UsageError("--drains and --no-drains exclude each other.", "Leave out one of them.")
     if no_drains or count == 0:
         if diameter_mm is not None:
             raise UsageError(
-                "There is no drain to give a diameter to.",
-                "Leave --drain-diameter out, or ask for drains with --drains N.",
+                "--drain-diameter has no effect without drain holes.",
+                "Leave it out, or request drain holes with --drains N.",
             )
         return {"drain.count": 0}
     return drain_keys(count, diameter_mm)

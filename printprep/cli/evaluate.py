@@ -1,4 +1,4 @@
-"""``printprep evaluate``: the paper's tables on any models."""
+"""``printprep evaluate``: the tables of the DensiCrafter paper, for any models."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from printprep.cli.options import json_option
+from printprep.cli.options import json_option, quiet_option, traceback_option
 
 METHODS = (
     "solid", "shell", "paper", "paper-no-base", "lean", "lean-no-base", "lean-full-base",
@@ -22,7 +22,7 @@ Examples:
 """
 
 
-@click.command("evaluate", short_help="The paper's tables on a folder of models.", epilog=_EPILOG)
+@click.command("evaluate", short_help="Compare methods on many models.", epilog=_EPILOG)
 @click.argument("source", type=click.Path(path_type=Path), metavar="FOLDER|CATALOGUE")
 @click.option(
     "-o",
@@ -30,8 +30,8 @@ Examples:
     type=click.Path(path_type=Path),
     required=True,
     metavar="FOLDER",
-    help="Where the tables go, and under results/ one file for each model and method; what is "
-    "there with the same settings is not computed again.",
+    help="Folder for the tables, and under results/ one file for each model and method. A result "
+    "that is there with the same settings is not computed again.",
 )
 @click.option(
     "--methods",
@@ -39,12 +39,13 @@ Examples:
     default=",".join(METHODS),
     show_default=True,
     metavar="NAME,...",
-    help="What to compare.",
+    help="The methods to compare.",
 )
 @click.option(
     "--ablations",
     is_flag=True,
-    help="Also the paper's: without each term, without smoothing, without B, other λ and ε.",
+    help="Add the paper's ablations: without each term, without smoothing, without the base B, "
+    "and with other λ and ε.",
 )
 @click.option(
     "--lean",
@@ -53,14 +54,15 @@ Examples:
     default=10.0,
     show_default=True,
     metavar="DEG",
-    help="Lean of the methods that ask for one.",
+    help="Lean for the methods that need one.",
 )
 @click.option(
     "--solver",
     type=click.Choice(("plane", "adam")),
     default="plane",
     show_default=True,
-    help="Of the paper's objective. plane: exact. adam: as its authors run it.",
+    help="How the paper's objective is solved. plane: exactly. adam: by gradient descent, as its "
+    "authors do.",
 )
 @click.option(
     "--resolution",
@@ -68,45 +70,46 @@ Examples:
     default=64,
     show_default=True,
     metavar="N",
-    help="Voxels along the unit cube's edge.",
+    help="Voxels along the edge of the unit cube.",
 )
 @click.option(
     "--voxels",
     type=click.Choice(("surface", "centre")),
     default="surface",
     show_default=True,
-    help="surface: what the surface passes through is the shell, as in the authors' code. centre: "
-    "voxels whose centre is inside, the outermost of them the shell.",
+    help="Which voxels the object has. surface: those that the surface passes through are the "
+    "shell, as in the authors' code. centre: those with their centre inside; the outermost are the "
+    "shell.",
 )
 @click.option(
     "--base-reach",
     type=click.Choice(("below", "within")),
     default="below",
     show_default=True,
-    help="How far B reaches around the object: below ε voxels, as the paper says, or up to and "
-    "including ε, as its code does.",
+    help="How far the base B reaches around the object. below: less than ε voxels, as the paper "
+    "says. within: up to and including ε, as its code does.",
 )
-@click.option("--set", "subset", metavar="NAME", help="Of a catalogue, the rows of this set.")
+@click.option("--set", "subset", metavar="NAME", help="Use only the catalogue's rows of this set.")
 @click.option(
     "--up",
     default="+z",
     show_default=True,
     metavar="AXIS",
-    help="Axis that is up, where no catalogue says.",
+    help="Axis that points up, where the catalogue names none.",
 )
-@click.option("--only", multiple=True, metavar="MODEL", help="This model alone. Repeatable.")
-@click.option("--limit", type=int, metavar="COUNT", help="The first models alone.")
+@click.option("--only", multiple=True, metavar="MODEL", help="Use only this model. Repeatable.")
+@click.option("--limit", type=int, metavar="COUNT", help="Use only the first COUNT models.")
 @click.option(
     "--workers",
     type=int,
     default=1,
     show_default=True,
     metavar="COUNT",
-    help="Models evaluated at once, each in a process of its own.",
+    help="Number of models to evaluate at once, each in its own process.",
 )
 @json_option
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but what went wrong.")
-@click.option("-v", "--verbose", is_flag=True, help="The traceback of a defect.")
+@quiet_option
+@traceback_option
 def command(
     source: Path,
     output: Path,
@@ -123,20 +126,21 @@ def command(
     verbose: bool,
     **which: Any,
 ) -> int:
-    """Compare methods on the models of a FOLDER, or of a CATALOGUE (CSV with a column file).
+    """Compare methods on the models of a FOLDER or a CATALOGUE (a CSV with a column "file").
 
-    In the paper's picture: N³ voxels, a shell one voxel thick, objects scaled to the unit cube at
-    unit density. Mass, mass as a share of the solid, share that stands in simulation and how far
-    it turns, tilt angle, F-score and Chamfer distance to the input, seconds. Written as table.csv,
-    results.json and tables.md.
+    The models are set up as in the DensiCrafter paper: N³ voxels, a shell one voxel thick, objects
+    scaled to the unit cube, unit density. The tables hold mass, mass as a share of the solid, the
+    share of parts that stand in simulation and how far they turn, tilt angle, F-score and Chamfer
+    distance to the input, and seconds. They are written as table.csv, results.json and tables.md.
     """
+    from printprep.cli.console import print_json
     from printprep.evaluate.cases import data_set
     from printprep.evaluate.methods import methods
     from printprep.evaluate.run import evaluate
     from printprep.evaluate.tables import as_json as tables_json
     from printprep.evaluate.tables import markdown, write_tables
 
-    del verbose  # the program's outermost boundary reads it from the arguments
+    del verbose  # read where errors are reported
     chosen = methods(
         [name.strip() for name in names.split(",") if name.strip()],
         ablations=ablations,
@@ -146,14 +150,11 @@ def command(
         base_reach=base_reach,
     )
     models = data_set(source, **which)
-    silent = quiet or as_json
-    told = None if silent else _tell
+    told = None if quiet or as_json else _tell
     found = evaluate(models, chosen, output, voxels=voxels, workers=workers, told=told)
     write_tables(found, output)
     if as_json:
-        from printprep.output.numbers import to_text
-
-        click.echo(to_text(tables_json(found)))
+        print_json(tables_json(found))
     elif not quiet:
         click.echo(markdown(found), nl=False)
     for name, error in found.failures:

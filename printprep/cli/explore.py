@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -16,14 +16,12 @@ from printprep.cli.options import (
     placement_of,
     placement_options,
     profile_option,
+    quiet_option,
     resolution_option,
     self_support_option,
     set_option,
 )
 from printprep.pipeline.options import FillOptions
-
-if TYPE_CHECKING:
-    from printprep.pipeline.explore import Exploration
 
 _EPILOG = """\b
 Examples:
@@ -47,16 +45,17 @@ Examples:
     type=int,
     default=13,
     show_default=True,
-    help="Leans to solve, evenly from 0° to the largest that can be reached.",
+    metavar="COUNT",
+    help="Number of leans to solve, evenly spaced from 0° to the largest that any filling reaches.",
 )
 @click.option(
     "--chart",
     type=click.Path(path_type=Path),
     metavar="OUT.svg|OUT.png",
-    help="Draw the curve.",
+    help="Draw the curve into this file.",
 )
 @json_option
-@click.option("-q", "--quiet", is_flag=True, help="No progress on stderr.")
+@quiet_option
 def command(
     model: Path,
     profile: str,
@@ -70,15 +69,16 @@ def command(
     quiet: bool,
     **placement: Any,
 ) -> int:
-    """Show the least mass of MODEL for every lean it can be made to stand.
+    """Show the least mass of MODEL for every lean at which it can stand.
 
-    Every point of the curve is the optimum of its own linear program, on the base that makes it
-    lightest, and has its proof. Beside it: the solid, the shell alone, and the part of
-    DensiCrafter's objective, each with its mass and its tilt angle.
+    Every point of the curve is the proven optimum of its own linear program, with the base that
+    makes it lightest. For comparison, the solid, the shell alone and the part of DensiCrafter's
+    objective are shown with mass and tilt angle.
     """
     from printprep.cli.console import print_json, stdout_console
     from printprep.pipeline.explore import explore
     from printprep.progress import for_terminal
+    from printprep.report.chart import write_chart
     from printprep.report.exploration import exploration_json, show_exploration
 
     check_picture(chart, "chart", (".svg", ".png"))
@@ -92,17 +92,9 @@ def command(
         progress=for_terminal(quiet=quiet),
     )
     if chart is not None:
-        _draw(found, chart)
+        write_chart(found, chart)
     if as_json:
         print_json(exploration_json(found, model=str(model)))
     else:
         show_exploration(stdout_console(), found)
     return 0
-
-
-def _draw(found: Exploration, path: Path) -> None:
-    from printprep.files import write_atomically
-    from printprep.report.chart import chart
-
-    drawing = chart(found)
-    write_atomically(path, drawing.svg() if path.suffix.lower() == ".svg" else drawing.png())

@@ -1,4 +1,4 @@
-"""``printprep hollow``: the main job."""
+"""``printprep hollow``: hollow a model and write the part."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from printprep.cli.options import (
     resolution_option,
     self_support_option,
     severity_of,
+    slicer_option,
 )
 from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
 from printprep.output.manual_settings import SLICERS
@@ -46,8 +47,8 @@ Examples:
     "--output",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Where to write: .3mf (carries the print settings), .stl, .obj or .ply; an existing file "
-    "is replaced. Default: MODEL-hollow.3mf in the current folder.",
+    help="File to write: .3mf (which carries the print settings), .stl, .obj or .ply. An existing "
+    "file is replaced. Default: MODEL-hollow.3mf in the current folder.",
 )
 @click.option(
     "--for",
@@ -55,8 +56,8 @@ Examples:
     type=click.Choice(SLICERS),
     default="prusa",
     show_default=True,
-    help="The slicer to write for. Only PrusaSlicer (and SuperSlicer) takes its settings from the "
-    "file; for others it holds the shape alone, and what must be set by hand is said.",
+    help="Slicer to write for. PrusaSlicer and SuperSlicer take the print settings from the file. "
+    "Other slicers take only the shape; the settings to enter by hand are listed.",
 )
 @profile_options
 @placement_options
@@ -64,7 +65,7 @@ Examples:
     "--pose",
     type=int,
     metavar="K",
-    help="Lay the model into its K-th steadiest stable pose, the steadiest being 1.",
+    help="Put the model into its K-th steadiest stable pose; 1 is the steadiest.",
 )
 @resolution_option
 @click.option(
@@ -72,7 +73,9 @@ Examples:
     type=click.Choice(tuple(OBJECTIVES)),
     default=DEFAULT_OBJECTIVE,
     show_default=True,
-    help=". ".join(f"{name}: {row.summary}" for name, row in OBJECTIVES.items()) + ".",
+    help="What to optimize. "
+    + ". ".join(f"{name}: {row.summary}" for name, row in OBJECTIVES.items())
+    + ".",
 )
 @click.option(
     "--solver",
@@ -80,22 +83,27 @@ Examples:
     type=click.Choice(tuple(dict.fromkeys(s for row in OBJECTIVES.values() for s in row.solvers))),
     default="plane",
     show_default=True,
-    help="Of the paper's objective: its exact plane, or Adam as the paper descends.",
+    help="How --objective paper is solved. plane: exactly. adam: by gradient descent, as in the "
+    "paper.",
 )
 @click.option(
-    "--device", default="cpu", show_default=True, help="Where Adam runs: cpu, cuda or cuda:N."
+    "--device",
+    default="cpu",
+    show_default=True,
+    metavar="DEVICE",
+    help="Device for --solver adam: cpu, cuda or cuda:N.",
 )
 @base_option
 @click.option(
     "--simulate",
     is_flag=True,
-    help="Let the part go in a physics engine too, and tilt the bed until it tips.",
+    help="Also simulate the part: let it stand freely, then tilt the bed until it tips.",
 )
 @click.option(
     "--verify",
     "verify_it",
     is_flag=True,
-    help="Slice the part with PrusaSlicer too, and measure the G-code, as `printprep verify` does.",
+    help="Also slice the part with PrusaSlicer and measure the G-code, like `printprep verify`.",
 )
 @self_support_option
 @click.option(
@@ -103,39 +111,37 @@ Examples:
     "drain_count",
     type=click.IntRange(0, 16),
     metavar="N",
-    help="Drain every cavity by N holes at least, one of them a vent. Default: the profile's, two "
-    "for resin and powder.",
+    help="Give every cavity at least N drain holes, one of them a vent. Default: the profile's "
+    "number (2 in the profiles for resin and powder).",
 )
 @click.option(
     "--drain-diameter",
     "drain_diameter_mm",
     type=float,
     metavar="MM",
-    help="Diameter of the drains (key drain.diameter_mm).",
+    help="Diameter of the drain holes (profile key drain.diameter_mm).",
 )
-@click.option("--no-drains", is_flag=True, help="Leave cavities sealed.")
+@click.option("--no-drains", is_flag=True, help="Leave the cavities sealed.")
 @click.option(
     "--plugs",
     type=click.Path(path_type=Path),
     metavar="OUT.3mf",
-    help="Write tapered plugs for the drains too, each an object of its own.",
+    help="Also write tapered plugs for the drain holes, each as its own object.",
 )
 @click.option(
     "--fill",
     type=click.Choice(tuple(FILLS)),
     default="cavity",
     show_default=True,
-    help=". ".join(f"{name}: {row.summary}" for name, row in FILLS.items()) + ".",
+    help="What fills the part. "
+    + ". ".join(f"{name}: {row.summary}" for name, row in FILLS.items())
+    + ".",
 )
-@click.option(
-    "--slicer",
-    "prusa_slicer",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="The PrusaSlicer that weighs prints with infill. Default: PRINTPREP_SLICER, else the one "
-    "on this machine, else they are estimated.",
+@slicer_option(
+    "PrusaSlicer that weighs prints with infill. Default: PRINTPREP_SLICER, or the one installed; "
+    "without one the weight is estimated."
 )
-@output_form_options("none")
+@output_form_options("none", " The part is then not written.")
 def command(
     model: Path,
     output: Path | None,
@@ -153,7 +159,7 @@ def command(
     drain_diameter_mm: float | None,
     no_drains: bool,
     plugs: Path | None,
-    prusa_slicer: Path | None,
+    slicer: Path | None,
     resolution: int,
     objective: str,
     base: Any,
@@ -165,10 +171,11 @@ def command(
     verbose: bool,
     **placement: Any,
 ) -> int:
-    """Hollow MODEL (STL, OBJ, PLY, 3MF or GLB; or voxels, NPZ, NPY or PT) and write the part.
+    """Hollow MODEL (STL, OBJ, PLY, 3MF, GLB; or voxels: NPZ, NPY, PT) and write the part.
 
-    The part is the lightest that still stands when leaned by --lean, with no wall thinner than the
-    profile's. Its outside is the model's, but for a base under its feet where that saves material.
+    The part is the lightest one that still stands at --lean, with no wall thinner than the
+    profile's. Its outside is that of the model, except for a base under its feet where that saves
+    material.
     """
     from printprep.pipeline.job import Job, run_job
     from printprep.progress import for_terminal
@@ -189,7 +196,7 @@ def command(
             solver=Solver(solver_name, device),
             base=base,
             self_support=self_support,
-            slicer=prusa_slicer,
+            slicer=slicer,
         ),
         written_for=written_for,
         plugs=plugs,

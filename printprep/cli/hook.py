@@ -1,4 +1,4 @@
-"""``printprep hook``: the slicer's post-processing script."""
+"""``printprep hook``: a post-processing script for the slicer."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.options import DEFAULT_PROFILE, placement_of, placement_options
+from printprep.cli.options import (
+    placement_of,
+    placement_options,
+    profile_option_with,
+    slicer_option,
+    traceback_option,
+)
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
@@ -23,21 +29,23 @@ Examples:
 """
 
 
-@click.command("hook", short_help="Post-process G-code, from the slicer.", epilog=_EPILOG)
+@click.command("hook", short_help="Measure G-code in the slicer's post-processing.", epilog=_EPILOG)
 @click.argument("gcode", type=click.Path(path_type=Path), metavar="GCODE", required=False)
 @click.option(
-    "--strict", is_flag=True, help="Fail, so that the slicer reports it, when the print would tip."
+    "--strict",
+    is_flag=True,
+    help="Fail on an error, such as a print that tips over, so that the slicer reports it.",
 )
 @click.option(
     "--part",
     type=click.Path(path_type=Path),
     metavar="OUT.3mf",
-    help="Compare with the figures of this part, made by `printprep hollow`.",
+    help="Compare the print with the figures of this part, made by `printprep hollow`.",
 )
 @click.option(
     "--reslice",
     is_flag=True,
-    help="Hollow --model with the G-code's settings, slice it, and put that G-code in place.",
+    help="Hollow --model with the settings of the G-code, slice it, and replace GCODE.",
 )
 @click.option(
     "--model",
@@ -45,19 +53,9 @@ Examples:
     metavar="MODEL",
     help="The model that was sliced, for --reslice.",
 )
-@click.option(
-    "--slicer",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="The PrusaSlicer for --reslice. Default: PRINTPREP_SLICER, else the one on this machine.",
-)
-@click.option(
-    "-p",
-    "--profile",
-    default=DEFAULT_PROFILE,
-    show_default=True,
-    metavar="NAME|FILE",
-    help="Limits for --reslice, under the G-code's own settings; the lean, unless --lean.",
+@slicer_option("PrusaSlicer for --reslice. Default: PRINTPREP_SLICER, or the one installed.")
+@profile_option_with(
+    "Profile for the lean, and for --reslice, where the settings of the G-code come first."
 )
 @click.option(
     "--lean",
@@ -68,10 +66,10 @@ Examples:
 @click.option(
     "--print-setting",
     is_flag=True,
-    help="Print the line to paste into the slicer's post-processing scripts, with the options "
-    "given, and do nothing else.",
+    help="Print the line to paste into the slicer's post-processing scripts, with the given "
+    "options, and do nothing else.",
 )
-@click.option("-v", "--verbose", is_flag=True, help="The traceback of a defect.")
+@traceback_option
 def command(
     gcode: Path | None,
     strict: bool,
@@ -85,57 +83,43 @@ def command(
     verbose: bool,
     **placement: Any,
 ) -> int:
-    """Measure GCODE as a slicer's post-processing script does, and write the figures at its end.
+    """Measure GCODE as a slicer's post-processing script, and write the figures at its end.
 
-    Warns when the print would tip at the lean. GCODE is changed in one step at the very end; on
-    any failure it is byte for byte what it was. No network, and nothing is written elsewhere.
+    It warns if the print tips over at less than --lean. GCODE is changed in a single step at the
+    end; after any failure it is unchanged. The hook uses no network and writes no other file.
     """
-    from printprep.hook.judge import already_running
+    from printprep.cli.console import trouble_to_stderr
+    from printprep.hook.judge import already_running, judge_and_annotate
 
-    _check(part, reslice, model)
+    _check_combination(part, reslice, model)
     if print_setting:
         from printprep.hook.command_line import setting_line
 
         click.echo(setting_line(_options_given(click.get_current_context())))
         return 0
     if gcode is None:
-        raise UsageError("GCODE is missing.", "The slicer gives it as the last argument.")
+        raise UsageError("GCODE is missing.", "The slicer passes it as the last argument.")
     if already_running():
         return 0
     if reslice:
         assert model is not None  # checked above
         findings = _reslice(gcode, model, slicer, profile, lean, placement_of(placement))
     else:
-        findings = _judge(gcode, part, profile, lean, strict=strict)
+        findings = judge_and_annotate(
+            gcode, profile=profile, lean=lean, part=part, strict=strict
+        ).findings
+        trouble_to_stderr(findings)
     failed = [item for item in findings if item.severity == "error"]
     return 1 if strict and failed else 0
 
 
-def _check(part: Path | None, reslice: bool, model: Path | None) -> None:
+def _check_combination(part: Path | None, reslice: bool, model: Path | None) -> None:
     if reslice and model is None:
         raise UsageError("--reslice needs the model.", "Name it with --model.")
     if reslice and part is not None:
-        raise UsageError("--reslice and --part exclude each other.")
+        raise UsageError("--reslice and --part exclude each other.", "Leave out one of them.")
     if model is not None and not reslice:
-        raise UsageError("--model means nothing without --reslice.")
-
-
-def _judge(
-    gcode: Path, part: Path | None, profile: str, lean: str | None, *, strict: bool
-) -> Sequence[Finding]:
-    """Judge and annotate; with --strict, a print that would tip is left as it was."""
-    from printprep.cli.console import trouble_to_stderr
-    from printprep.hook.gcode_file import annotate
-    from printprep.hook.judge import judge, notes
-    from printprep.profiles import load_profile
-    from printprep.stand.lean import lean_of
-
-    asked = lean_of(lean, load_profile(profile).stability.lean_deg)
-    found = judge(gcode, lean=asked, part=part)
-    trouble_to_stderr(found.findings)
-    if not (strict and any(item.severity == "error" for item in found.findings)):
-        annotate(gcode, notes(found))
-    return found.findings
+        raise UsageError("--model has no effect without --reslice.", "Add --reslice.")
 
 
 def _reslice(
@@ -161,13 +145,15 @@ def _reslice(
     )
     trouble_to_stderr(done.after.findings)
     click.echo(
-        f"printprep: {done.before.mass_g:.1f} g became {done.after.printed.mass_g:.1f} g", err=True
+        f"printprep: The print weighs {done.after.printed.mass_g:.1f} g instead of "
+        f"{done.before.mass_g:.1f} g.",
+        err=True,
     )
     return done.after.findings
 
 
 def _options_given(context: click.Context) -> list[str]:
-    """The options of this very call, paths made absolute: a slicer runs scripts anywhere."""
+    """The options of this call, with absolute paths: a slicer may run scripts in any folder."""
     words = []
     for parameter in context.command.params:
         name = parameter.name or ""

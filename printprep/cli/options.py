@@ -1,4 +1,4 @@
-"""Options that several commands share, so that they read and mean the same everywhere."""
+"""Options that several commands share, so that they have the same name and meaning everywhere."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _together(*options: Callable[[Command], Command]) -> Callable[[Command], Com
 
 
 def model_argument(command: Command) -> Command:
-    """The file to work on; that it is there is the reader's to say (exit code 3)."""
+    """The file to work on; the reader reports a missing one (exit code 3)."""
     return click.argument("model", type=click.Path(path_type=Path), metavar="MODEL")(command)
 
 
@@ -40,14 +40,14 @@ def placement_options(command: Command) -> Command:
         click.option(
             "--units",
             type=click.Choice(UNITS),
-            help="Unit of the file's numbers. Default: what the file says, else mm.",
+            help="Unit of the numbers in the file. Default: the one named in the file, or mm.",
         ),
         click.option(
             "--up",
             default="+z",
             show_default=True,
             metavar="AXIS",
-            help="Axis of the file that points up: x, y or z, with an optional sign.",
+            help="Axis of the file that points up: x, y or z, with a sign if you like.",
         ),
         click.option("--scale", type=float, metavar="FACTOR", help="Scale by this factor."),
         click.option(
@@ -60,7 +60,7 @@ def placement_options(command: Command) -> Command:
 
 
 def placement_of(options: Mapping[str, Any], pose: int | None = None) -> Placement:
-    """What ``placement_options`` were given, as one value."""
+    """The values of ``placement_options``, as one value."""
     return Placement(**options, pose=pose)
 
 
@@ -72,7 +72,8 @@ def resolution_option(command: Command) -> Command:
         default=64,
         show_default=True,
         metavar="N",
-        help="Voxels along the longest side, for the optimization; walls are exact at any.",
+        help="Voxels along the longest side, for the optimization. Walls are exact at any "
+        "resolution.",
     )(command)
 
 
@@ -83,29 +84,37 @@ def base_option(command: Command) -> Command:
         type=click.Choice(("auto", "never", "always")),
         default="auto",
         show_default=True,
-        help="Add a base under the feet (seat them, grow their footprint); auto: where that saves "
-        "material.",
+        help="Whether to add a base under the feet, which seats them on the bed and grows their "
+        "footprint. auto: where that saves material.",
     )(command)
 
 
 def self_support_option(command: Command) -> Command:
+    """Whether vaults carry the ceilings of cavities."""
     return click.option(
         "--self-support/--no-self-support",
         default=None,
-        help="Carry the ceilings of cavities by vaults inside them, so that they print without "
-        "support. Default: for filament.",
+        help="Build vaults inside the cavities that carry their ceilings, so that they print "
+        "without supports. Default: on for filament, off for resin and powder.",
     )(command)
 
 
-def profile_option(command: Command) -> Command:
-    """Printer, material and limits."""
+def profile_option_with(description: str) -> Callable[[Command], Command]:
+    """Printer, material and limits, with a command's own description."""
     return click.option(
         "-p",
         "--profile",
         default=DEFAULT_PROFILE,
         show_default=True,
         metavar="NAME|FILE",
-        help="Printer, material and limits: a name from `printprep profiles`, or a TOML file.",
+        help=description,
+    )
+
+
+def profile_option(command: Command) -> Command:
+    """Printer, material and limits."""
+    return profile_option_with(
+        "Printer, material and limits: a name from `printprep profiles`, or a TOML file."
     )(command)
 
 
@@ -115,26 +124,37 @@ def profile_options(command: Command) -> Command:
         profile_option,
         set_option,
         click.option(
-            "--wall", "wall_mm", type=float, metavar="MM", help="Thinnest wall (key wall_mm)."
+            "--wall",
+            "wall_mm",
+            type=float,
+            metavar="MM",
+            help="Thinnest wall (profile key wall_mm).",
         ),
         click.option(
             "--lean",
             "lean",
             metavar="DEG[@AZIMUTH]",
-            help="Lean at which the part must still stand, in every direction, or toward one "
-            "azimuth (15@90; from +x, counter-clockwise). Default: the profile's.",
+            help="Lean at which the part must still stand: in every direction (15), or toward one "
+            "azimuth (15@90; counter-clockwise from +x). Default: the profile's.",
         ),
     )(command)
 
 
-def fail_on_option(default: str) -> Callable[[Command], Command]:
-    """What counts as failing."""
+def slicer_option(description: str) -> Callable[[Command], Command]:
+    """The slicer to run, with what a command needs it for."""
+    return click.option(
+        "--slicer", type=click.Path(path_type=Path), metavar="PATH", help=description
+    )
+
+
+def fail_on_option(default: str, consequence: str = "") -> Callable[[Command], Command]:
+    """Which findings count as a failure; ``consequence`` says what else follows."""
     return click.option(
         "--fail-on",
         type=click.Choice(("none", "info", "warning", "error")),
         default=default,
         show_default=True,
-        help="Exit with 1 when a finding is at least this severe; hollow then writes nothing.",
+        help=f"Exit with code 1 if a finding is at least this severe.{consequence}",
     )
 
 
@@ -144,21 +164,26 @@ def severity_of(fail_on: str) -> Severity | None:
 
 
 def exit_code(findings: Sequence[Finding], fail_on: str) -> int:
-    """1 where a finding is at least as severe as --fail-on names, else 0."""
+    """1 if a finding is at least as severe as --fail-on names, else 0."""
     from printprep.check import at_or_above
 
     severity = severity_of(fail_on)
     return 1 if severity is not None and at_or_above(findings, severity) else 0
 
 
-def output_form_options(default_fail_on: str) -> Callable[[Command], Command]:
-    """How to say what was found, and what counts as failing."""
+def output_form_options(
+    default_fail_on: str, consequence: str = ""
+) -> Callable[[Command], Command]:
+    """How results are printed, and which findings count as a failure."""
     return _together(
-        fail_on_option(default_fail_on),
+        fail_on_option(default_fail_on, consequence),
         json_option,
-        click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr."),
+        quiet_option,
         click.option(
-            "-v", "--verbose", is_flag=True, help="More figures; the traceback of a defect."
+            "-v",
+            "--verbose",
+            is_flag=True,
+            help="Print more figures, and the traceback of a defect.",
         ),
     )
 
@@ -166,23 +191,37 @@ def output_form_options(default_fail_on: str) -> Callable[[Command], Command]:
 def json_option(command: Command) -> Command:
     """One JSON object and nothing else on stdout."""
     return click.option(
-        "--json", "as_json", is_flag=True, help="Print one JSON object, errors too."
+        "--json", "as_json", is_flag=True, help="Print one JSON object; errors are JSON too."
     )(command)
 
 
+def quiet_option(command: Command) -> Command:
+    """No progress and no summary."""
+    return click.option(
+        "-q", "--quiet", is_flag=True, help="Print only warnings and errors, on stderr."
+    )(command)
+
+
+def traceback_option(command: Command) -> Command:
+    """-v for commands without more figures; ``cli.run`` reads it from the arguments."""
+    return click.option("-v", "--verbose", is_flag=True, help="Print the traceback of a defect.")(
+        command
+    )
+
+
 def set_option(command: Command) -> Command:
-    """Any key of the profile."""
+    """Single keys of the profile."""
     return click.option(
         "--set",
         "settings",
         multiple=True,
         metavar="KEY=VALUE",
-        help="Change a key of the profile, as printer.layer_height_mm=0.3. Repeatable.",
+        help="Change a profile key, for example printer.layer_height_mm=0.3. Repeatable.",
     )(command)
 
 
 def check_picture(path: Path | None, option: str, suffixes: Sequence[str]) -> None:
-    """Find out before the long work whether a picture can be written; None is no picture.
+    """Check before the long work that a picture can be written; None means no picture.
 
     Raises UsageError for another suffix, OutputError for a folder that is missing or not writable.
     """
@@ -193,7 +232,7 @@ def check_picture(path: Path | None, option: str, suffixes: Sequence[str]) -> No
     if path.suffix.lower() not in suffixes:
         known = " or ".join(suffixes)
         raise UsageError(
-            f"{path}: --{option} writes {known}.", f"Name a file that ends in {known}."
+            f"{path}: --{option} writes only {known}.", f"Name a file that ends in {known}."
         )
     check_writable(path)
 
@@ -212,8 +251,8 @@ def overrides(
         key, equals, value = setting.partition("=")
         if not (key.strip() and equals):
             raise UsageError(
-                f"--set {setting}: there is no KEY=VALUE in it.",
-                "For example --set printer.layer_height_mm=0.3.",
+                f"--set {setting} is not of the form KEY=VALUE.",
+                "An example: --set printer.layer_height_mm=0.3.",
             )
         pairs.append((key.strip(), value.strip()))
     if wall_mm is not None:
@@ -223,5 +262,7 @@ def overrides(
     if len(changed) < len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise UsageError(f"{twice} is set twice.", "Give it once, by --set or its own option.")
+        raise UsageError(
+            f"{twice} is set twice.", "Set it once, with --set or with its own option."
+        )
     return changed

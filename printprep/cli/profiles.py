@@ -1,4 +1,4 @@
-"""``printprep profiles``: what there is, what is in one, and one as a slicer's settings."""
+"""``printprep profiles``: list the profiles, show one, or export one for a slicer."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from printprep.errors import UsageError
 def command(ctx: click.Context, as_json: bool) -> None:
     """List the profiles (the same as `profiles list`), show one, or export one.
 
-    A profile holds a printer, a material and their limits. A path to a TOML file works wherever a
-    name does.
+    A profile holds a printer, a material and their limits. Instead of a profile's name you can
+    give the path of a TOML file.
     """
     if ctx.invoked_subcommand is None:
         _list(as_json)
     elif as_json:
         name = ctx.invoked_subcommand
-        raise UsageError(f"--json belongs behind {name}: printprep profiles {name} --json.")
+        raise UsageError(f"--json must come after {name}: printprep profiles {name} --json.")
 
 
 @command.command("list")
@@ -39,15 +39,14 @@ def list_command(as_json: bool) -> None:
 def show_command(name: str, as_json: bool) -> None:
     """Show profile NAME as TOML, with the source of every figure.
 
-    Its keys are those that --set takes, with the table's name before a dot.
+    --set takes its keys, written as TABLE.KEY for a key in a table.
     """
+    from printprep.cli.console import print_json
     from printprep.profiles import load_profile, profile_source
 
     profile = load_profile(name)
     if as_json:
-        from printprep.output.numbers import to_text
-
-        click.echo(to_text(profile.model_dump(mode="json")))
+        print_json(profile.model_dump(mode="json"))
     else:
         click.echo(profile_source(name), nl=False)
 
@@ -59,13 +58,13 @@ def show_command(name: str, as_json: bool) -> None:
     "--output",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="The .ini to write; an existing one is replaced. Default: stdout.",
+    help="The .ini file to write; an existing file is replaced. Default: stdout.",
 )
 @set_option
 def export_command(name: str, output: Path | None, settings: tuple[str, ...]) -> None:
     """Export profile NAME as an .ini for PrusaSlicer (File > Import > Import Config).
 
-    It holds what a 3MF cannot: first layer, nozzle, line widths, filament.
+    It holds the settings that a 3MF cannot carry: first layer, nozzle, line widths, filament.
     """
     from printprep.profiles import load_profile
     from printprep.slicer.prusa_ini import profile_ini
@@ -81,15 +80,13 @@ def export_command(name: str, output: Path | None, settings: tuple[str, ...]) ->
 
 
 def _list(as_json: bool) -> None:
+    from printprep.cli.console import print_json, stdout_console
     from printprep.profiles import load_profile, profile_names
 
     profiles = [load_profile(name) for name in profile_names()]
     if as_json:
-        from printprep.output.numbers import to_text
-
-        click.echo(to_text({"profiles": [item.model_dump(mode="json") for item in profiles]}))
+        print_json({"profiles": [item.model_dump(mode="json") for item in profiles]})
         return
-    from printprep.cli.console import stdout_console
     from printprep.report.terminal import show_profiles
 
     show_profiles(stdout_console(), profiles)

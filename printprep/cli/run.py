@@ -1,7 +1,7 @@
 """From arguments to an exit code: every way a run can end, in one place.
 
-An error is one line on stderr and a hint, or with --json one object on stdout.  Only what nobody
-foresaw is called a defect; its traceback is shown with -v.
+An error is one line on stderr and a hint, or with --json one object on stdout.  Only an unexpected
+exception is called a defect; -v shows its traceback.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _DEFECT = 70
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the program and leave it with its exit code."""
+    """Run the program and exit with its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a pipe in a code page must not break on a degree sign
             stream.reconfigure(errors="replace")
@@ -27,10 +27,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run the command line ``arguments`` (without the program's name); returns the exit code."""
+    """Run the command line ``arguments`` (without the program's name); return the exit code."""
     from printprep.cli.app import printprep
 
-    # Looked for here, not asked of click: what click cannot parse is reported in this form too.
+    # Read here and not by click: an error in the arguments must be reported in this form too.
     options = [*arguments, "--"]
     options = options[: options.index("--")]
     as_json = "--json" in options
@@ -46,19 +46,19 @@ def run(arguments: Sequence[str]) -> int:
         return _report("usage", *_usage(error), UsageError.exit_code, as_json)
     except (click.Abort, KeyboardInterrupt):
         return _report("interrupted", "Interrupted.", None, _INTERRUPTED, as_json)
-    except Exception as error:  # the outermost boundary: anything else is a defect of ours
+    except Exception as error:  # the outermost boundary: anything else is a defect of printprep
         if verbose:
             import traceback
 
             traceback.print_exc()
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        name = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         hint = None if verbose else "Run it again with -v for the traceback, and report it."
-        return _report("defect", f"This is a defect of printprep: {what}", hint, _DEFECT, as_json)
+        return _report("defect", f"This is a defect of printprep: {name}", hint, _DEFECT, as_json)
 
 
 def _usage(error: click.ClickException) -> tuple[str, str | None]:
     context = getattr(error, "ctx", None)
-    hint = None if context is None else f"`{context.command_path} --help` lists what is possible."
+    hint = None if context is None else f"`{context.command_path} --help` shows the usage."
     return error.format_message(), hint
 
 

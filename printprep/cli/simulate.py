@@ -1,9 +1,9 @@
-"""``printprep simulate``: a part in the hands of a physics engine."""
+"""``printprep simulate``: simulate how a part stands in a physics engine."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -18,9 +18,7 @@ from printprep.cli.options import (
     profile_options,
 )
 
-if TYPE_CHECKING:
-    from printprep.pipeline.simulate import Simulated
-    from printprep.progress import Progress
+_SUFFIXES = {"gif": (".gif",), "strip": (".png",)}
 
 _EPILOG = """\b
 Examples:
@@ -30,7 +28,7 @@ Examples:
 """
 
 
-@click.command("simulate", short_help="Let a part go, and tilt the bed.", epilog=_EPILOG)
+@click.command("simulate", short_help="Simulate how a part stands and tips.", epilog=_EPILOG)
 @model_argument
 @profile_options
 @placement_options
@@ -38,13 +36,13 @@ Examples:
     "--gif",
     type=click.Path(path_type=Path),
     metavar="OUT.gif",
-    help="Draw the bed tilting toward the weakest edge until the part tips, as a moving picture.",
+    help="Draw an animation: the bed tilts toward the weakest edge until the part tips.",
 )
 @click.option(
     "--strip",
     type=click.Path(path_type=Path),
     metavar="OUT.png",
-    help="The same as six stills side by side.",
+    help="Draw the same as six pictures side by side.",
 )
 @output_form_options("error")
 def command(
@@ -61,14 +59,15 @@ def command(
     verbose: bool,
     **placement: Any,
 ) -> int:
-    """Simulate how MODEL (STL, OBJ, PLY, 3MF or GLB) stands; the model is not changed.
+    """Simulate how MODEL (STL, OBJ, PLY, 3MF, GLB; or voxels: NPZ, NPY, PT) stands and tips.
 
-    It is let go on a level bed for ten seconds; then the bed tilts slowly toward eight azimuths,
-    the weakest edge's and the one that --lean names, until its foot leaves the bed and it goes
-    over. The angles are set beside the computed ones, and against --lean.
+    The part first stands freely on a level bed for ten seconds. Then the bed tilts slowly until
+    the foot leaves it and the part falls over: toward eight azimuths, toward the weakest edge, and
+    toward the azimuth of --lean. The angles are compared with the computed ones and with --lean.
+    The model is not changed.
     """
     from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
-    from printprep.pipeline.simulate import simulate
+    from printprep.pipeline.simulate import draw_fall, simulate
     from printprep.progress import for_terminal
     from printprep.report.json import simulate_json
     from printprep.report.terminal import show_simulation
@@ -84,7 +83,7 @@ def command(
         lean=lean,
         progress=progress,
     )
-    _draw(found, gif, strip, progress)
+    draw_fall(found, gif=gif, strip=strip, progress=progress)
     if as_json:
         print_json(simulate_json(found, model=str(model)))
     elif quiet:
@@ -92,23 +91,3 @@ def command(
     else:
         show_simulation(stdout_console(), found, verbose=verbose)
     return exit_code(found.findings, fail_on)
-
-
-_SUFFIXES = {"gif": (".gif",), "strip": (".png",)}
-
-
-def _draw(found: Simulated, gif: Path | None, strip: Path | None, progress: Progress) -> None:
-    if gif is None and strip is None:
-        return
-    from printprep.files import write_atomically
-    from printprep.render import animation
-    from printprep.stand.fall import film
-
-    part, first_layer = found.solid.manifold, found.profile.printer.first_layer_mm
-    with progress.stage("draw"):
-        if gif is not None:
-            moving = film(part, first_layer, animation.GIF_FRAMES_PER_S)
-            write_atomically(gif, animation.gif_bytes(moving))
-        if strip is not None:
-            stills = film(part, first_layer, animation.STRIP_FRAMES_PER_S)
-            write_atomically(strip, animation.strip_bytes(stills))

@@ -1,4 +1,4 @@
-"""``printprep verify``: what the slicer prints, against what was computed."""
+"""``printprep verify``: compare what the slicer prints with what was computed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,14 @@ from pathlib import Path
 
 import click
 
-from printprep.cli.options import exit_code, fail_on_option, json_option
+from printprep.cli.options import (
+    exit_code,
+    fail_on_option,
+    json_option,
+    quiet_option,
+    slicer_option,
+    traceback_option,
+)
 
 _EPILOG = """\b
 Examples:
@@ -18,30 +25,26 @@ Examples:
 
 @click.command("verify", short_help="Slice a part and measure its G-code.", epilog=_EPILOG)
 @click.argument("part", type=click.Path(path_type=Path), metavar="PART.3mf")
-@click.option(
-    "--slicer",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="The PrusaSlicer to use. Default: PRINTPREP_SLICER, else the one on this machine.",
-)
+@slicer_option("PrusaSlicer to use. Default: PRINTPREP_SLICER, or the one installed.")
 @click.option(
     "--load",
     type=click.Path(path_type=Path),
     metavar="CONFIG.ini",
-    help="Slice with these settings (an .ini, or a G-code that carries them), not the profile's.",
+    help="Slice with these settings (an .ini, or a G-code file that carries them) instead of the "
+    "profile's.",
 )
 @click.option(
     "--compare",
     "compare_with",
     type=click.Path(path_type=Path),
     metavar="MODEL",
-    help="The model the part was made of: slice it too, with 15 % gyroid and with lightning "
-    "infill, at walls as thick.",
+    help="The model that the part was made from. It is sliced too, with 15 % gyroid infill and "
+    "with lightning infill, and with walls of the same thickness.",
 )
 @fail_on_option("error")
 @json_option
-@click.option("-q", "--quiet", is_flag=True, help="Only warnings and errors, on stderr.")
-@click.option("-v", "--verbose", is_flag=True, help="The traceback of a defect.")
+@quiet_option
+@traceback_option
 def command(
     part: Path,
     slicer: Path | None,
@@ -54,9 +57,9 @@ def command(
 ) -> int:
     """Slice PART.3mf, made by `printprep hollow`, and measure the G-code.
 
-    Mass, centre of mass, contact and tilt angle as printed, against the figures the file carries;
-    whether anything is printed inside cavities, and, with supports switched on, whether they go
-    there. Nothing is written.
+    It compares mass, centre of mass, contact and tilt angle of the print with the figures in the
+    file. It also tells whether anything is printed inside cavities, and whether supports go there
+    when they are switched on. No file is written.
     """
     from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
     from printprep.progress import for_terminal

@@ -1,4 +1,4 @@
-"""From what was solved to a density on the grid, with its planes and its proof."""
+"""Turns the solution of the linear programs into a density on the grid, with its certificate."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from printprep.types import Certificate, Density, Plane
 
 
 def density_of(choice: Choice, program: Program, least: float = 0.0) -> Density:
-    """The choice as a density on the grid, with one plane for each body of the solid.
+    """The choice as an (nx, ny, nz) density on the grid, with one plane for each body of the solid.
 
-    least : density of a free voxel that is not filled, 0 where it is a cavity.
+    least : density of a free voxel that is not filled, 0 for a cavity.
     """
     domain = program.interior.domain
     count = len(program.bodies)

@@ -1,1 +1,1 @@
-"""The post-processing script of a slicer: measure a G-code, judge it, write the figures into it."""
+"""A slicer's post-processing script: measures a G-code, judges it, writes the figures into it."""

@@ -1,7 +1,8 @@
-"""The line a user pastes into the slicer, so that it runs the hook after every export.
+"""The line to paste into the slicer, so that it runs the hook after every export.
 
-PrusaSlicer hands the line to the shell on Linux and macOS, and splits it by Windows' own rules
-there, where the first word must be a file that exists; the G-code's path follows as last word.
+On Linux and macOS, PrusaSlicer passes the line to the shell.  On Windows it splits the line by the
+rules of Windows, and the first word must be an existing file.  The path of the G-code follows as
+the last word.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from collections.abc import Sequence
 def setting_line(options: Sequence[str], *, windows: bool | None = None) -> str:
     """The line for Print Settings → Output options → Post-processing scripts.
 
-    options : of ``printprep hook``;  windows : by whose rules it is quoted, None for this machine.
+    options : those of ``printprep hook``.
+    windows : whether it is quoted by the rules of Windows, None for those of this machine.
     """
     words = [sys.executable, "-m", "printprep", "hook", *options]
     if sys.platform == "win32" if windows is None else windows:

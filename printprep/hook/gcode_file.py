@@ -80,4 +80,4 @@ def _ends_line(gcode: Path, size: int) -> bool:
 
 
 def _refused(gcode: Path, error: OSError) -> OutputError:
-    return OutputError(f"{gcode.name}: cannot be rewritten ({reason_of(error)}); it is as it was")
+    return OutputError(f"{gcode.name} is unchanged: it cannot be rewritten ({reason_of(error)}).")

@@ -1,8 +1,8 @@
-"""What a slicer's post-processing script does here: measure the G-code, judge it, write it down.
+"""Measures a G-code, judges it, and writes the figures into it.
 
-The G-code is changed only at the very end, in one step (:mod:`printprep.hook.gcode_file`).  While
-a hook runs, the variable PRINTPREP_IN_HOOK is set, and a hook that finds it set does nothing: a
-slicer started by a hook cannot start it again.
+The G-code is changed only at the end, in one step (:mod:`printprep.hook.gcode_file`).  While a hook
+runs, the variable PRINTPREP_IN_HOOK is set.  A hook does nothing where it is set already, so that a
+slicer that a hook starts does not start the hook again.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from printprep.types import Finding
 from printprep.version import __version__
 
 if TYPE_CHECKING:
+    from printprep.arrays import Float
     from printprep.gcode.printed import Printed
     from printprep.types import Lean
     from printprep.verify.part_3mf import ComputedPart
@@ -31,9 +32,9 @@ _SAME_SIZE_MM = 1.0
 
 @dataclass(frozen=True, eq=False)
 class JudgedPrint:
-    """A G-code as it was judged.
+    """A G-code with its figures and findings.
 
-    part : the part it was compared with, moved to where it was printed, or None.
+    part : the part it was compared with, moved to the place of the print, or None.
     """
 
     printed: Printed
@@ -43,13 +44,13 @@ class JudgedPrint:
 
 
 def already_running() -> bool:
-    """Whether this is a hook that a hook's own slicer started."""
+    """Whether this hook was started by the slicer of another hook."""
     return IN_HOOK in os.environ
 
 
 @contextmanager
 def guarded() -> Iterator[None]:
-    """Marks everything started meanwhile as started by a hook."""
+    """Marks every program that is started meanwhile as started by a hook."""
     os.environ[IN_HOOK] = "1"
     try:
         yield
@@ -58,41 +59,72 @@ def guarded() -> Iterator[None]:
 
 
 def judge(gcode: Path, *, lean: Lean, part: Path | None = None) -> JudgedPrint:
-    """Measure a G-code; with a part, compare it with the figures that carries.
+    """Measure a G-code, and compare it with the figures of a part.
 
-    lean : what it must stand; a part brings its own.
+    lean : the lean at which it should stand; with a part, the part's lean counts.
 
-    Raises InputError where the G-code or the part cannot be read.
+    Raises InputError if the G-code or the part cannot be read.
     """
     from printprep.check.registry import sorted_findings
     from printprep.verify.part_3mf import computed_part
     from printprep.verify.rules import compare
 
-    carried = None if part is None else computed_part(part)
+    computed = None if part is None else computed_part(part)
     printed = measured(gcode)
-    findings = list(_objects(printed))
-    if carried is None:
+    findings = list(_several_objects(printed))
+    if computed is None:
         findings += tips(printed, lean)
     else:
-        lean = carried.lean
-        carried = moved_to(carried, printed)
-        if _alike(carried, printed):
-            printed = measured(gcode, carried)
-            findings += compare(carried, printed)
+        lean = computed.lean
+        computed = moved_to(computed, printed)
+        if same_size(computed.size_mm, printed):
+            printed = measured(gcode, computed)
+            findings += compare(computed, printed)
         else:
-            findings += [_elsewhere(carried, printed), *tips(printed, lean)]
-    return JudgedPrint(printed, lean, carried, sorted_findings(findings))
+            findings += [_another_print(computed, printed), *tips(printed, lean)]
+    return JudgedPrint(printed, lean, computed, sorted_findings(findings))
+
+
+def judge_and_annotate(
+    gcode: Path,
+    *,
+    profile: str,
+    lean: str | None = None,
+    part: Path | None = None,
+    strict: bool = False,
+) -> JudgedPrint:
+    """Judge a G-code and write the figures at its end.
+
+    profile, lean : the lean at which the print should stand; None takes the profile's.
+    strict : leave the G-code unchanged if a finding is an error.
+
+    Raises InputError if the G-code or the part cannot be read, UsageError for the profile or the
+    lean, OutputError if the G-code cannot be rewritten.
+    """
+    from printprep.hook.gcode_file import annotate
+    from printprep.profiles import load_profile
+    from printprep.stand.lean import lean_of
+
+    requested = lean_of(lean, load_profile(profile).stability.lean_deg)
+    judged = judge(gcode, lean=requested, part=part)
+    if not (strict and any(item.severity == "error" for item in judged.findings)):
+        annotate(gcode, notes(judged))
+    return judged
 
 
 def measured(gcode: Path, part: ComputedPart | None = None) -> Printed:
-    """A G-code's figures; what it does not say of the filament, the slicer's environment may."""
+    """The figures of a G-code.
+
+    What the G-code does not tell about the filament is read from the environment variables that the
+    slicer sets.
+    """
     from printprep.gcode.measure import measure_gcode
 
     cavities, bodies = ((), ()) if part is None else (part.cavities, part.bodies)
     printed = measure_gcode(gcode, cavities=cavities, bodies=bodies)
-    slicer_summary = printed.slicer_summary.settings
-    diameter = None if "filament_diameter" in slicer_summary else _setting("FILAMENT_DIAMETER")
-    density = None if "filament_density" in slicer_summary else _setting("FILAMENT_DENSITY")
+    settings = printed.slicer_summary.settings
+    diameter = None if "filament_diameter" in settings else _setting("FILAMENT_DIAMETER")
+    density = None if "filament_density" in settings else _setting("FILAMENT_DENSITY")
     if diameter is None and density is None:
         return printed
     return measure_gcode(
@@ -101,19 +133,19 @@ def measured(gcode: Path, part: ComputedPart | None = None) -> Printed:
 
 
 def tips(printed: Printed, lean: Lean) -> Iterator[Finding]:
-    """Whether a print would tip at the lean."""
+    """Whether a print tips over at less than the lean."""
     from printprep.verify.rules import printed_tilt
 
     yield from printed_tilt(
         printed,
         lean,
         promised_deg=lean.angle_deg,
-        fix="Print it with a brim that stays on, or hollow it: printprep hollow.",
+        fix="Print it with a brim that stays on, or hollow the model with `printprep hollow`.",
     )
 
 
 def notes(judged: JudgedPrint) -> list[str]:
-    """What is written into the G-code: "key = value", nothing of the machine or the time."""
+    """The lines for the G-code, "key = value" each; they do not depend on machine or time."""
     from printprep.gcode.stability import tilt_as_printed
 
     printed = judged.printed
@@ -137,7 +169,7 @@ def notes(judged: JudgedPrint) -> list[str]:
 
 
 def moved_to(part: ComputedPart, printed: Printed) -> ComputedPart:
-    """The part moved over the bed to where the print is."""
+    """The part, moved over the bed to the place of the print."""
     contact = part.contact_polygon_mm
     low, high = printed.bounds_mm
     shift = np.zeros(3)
@@ -157,37 +189,34 @@ def moved_to(part: ComputedPart, printed: Printed) -> ComputedPart:
     )
 
 
-def same_size(size_mm: np.ndarray, printed: Printed) -> bool:
-    """Whether a print is as large as a model of that size, to about two lines."""
+def same_size(size_mm: Float, printed: Printed) -> bool:
+    """Whether a print is as large as a model of this size, (3,) mm, to about two lines."""
     return bool((np.abs(np.ptp(printed.bounds_mm, axis=0) - size_mm) <= _SAME_SIZE_MM).all())
 
 
-def _alike(part: ComputedPart, printed: Printed) -> bool:
-    return same_size(part.size_mm, printed)
-
-
-def _elsewhere(part: ComputedPart, printed: Printed) -> Finding:
+def _another_print(part: ComputedPart, printed: Printed) -> Finding:
     sizes = " × ".join(f"{side:.1f}" for side in np.ptp(printed.bounds_mm, axis=0))
+    part_sizes = " × ".join(f"{side:.1f}" for side in part.size_mm)
     return finding(
         "another-print",
-        f"The G-code prints {sizes} mm, which is not the size of {part.file.name}: "
-        "nothing else of it was compared.",
+        f"The print measures {sizes} mm, but {part.file.name} measures {part_sizes} mm: they were "
+        "not compared.",
         "Slice that file alone, neither turned nor scaled.",
     )
 
 
-def _objects(printed: Printed) -> Iterator[Finding]:
+def _several_objects(printed: Printed) -> Iterator[Finding]:
     if len(printed.objects) > 1:
         yield finding(
             "several-objects",
-            f"The G-code prints {len(printed.objects)} objects; they are weighed and balanced "
-            "as one.",
-            "Export them one by one to judge each.",
+            f"The G-code prints {len(printed.objects)} objects; mass and tilt angle are those of "
+            "all together.",
+            "Export the objects one by one to judge each.",
         )
 
 
 def _setting(key: str) -> float | None:
-    """The first extruder's value of a print setting, as the slicer gives it to its scripts."""
+    """The first extruder's value of a print setting, from the slicer's environment variables."""
     value = os.environ.get(f"SLIC3R_{key}", "").split(",")[0]
     try:
         number = float(value)

@@ -1,9 +1,9 @@
-"""Replace a G-code by one of the hollowed model, sliced with the settings the G-code carries.
+"""Replaces a G-code by one of the hollowed model, sliced with the settings in the G-code.
 
-A G-code says what was sliced only through what it prints.  So the model is sliced as it is first:
-where that is not what the G-code prints, feature by feature, there was more to it (other objects,
-modifiers, painting, settings of its own, another size), which slicing anew would lose, and the
-G-code is left alone.
+A G-code does not tell what was sliced, only what it prints.  So the solid model is sliced first.
+Where its print differs from the G-code, feature by feature, the G-code has something that slicing
+again would lose (other objects, modifiers, painting, object settings, another size), and it stays
+unchanged.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from printprep.slicer.process import Slicer
     from printprep.verify.part_3mf import ComputedPart
 
-_SAME_SHARE = 0.03  # of all material: what another place on the bed changes, and no modifier
-_LEFT = "the G-code is as it was"
+# Share of all material: another place on the bed changes less than this, a modifier more.
+_SAME_SHARE = 0.03
 
 
 @dataclass(frozen=True, eq=False)
 class Resliced:
-    """A G-code that was replaced: what it printed, and what it prints now."""
+    """A G-code that was replaced: its print before and after."""
 
     before: Printed
     after: JudgedPrint
@@ -54,17 +54,17 @@ def reslice(
     placement: Placement = AS_IN_FILE,
     progress: Progress = SILENT,
 ) -> Resliced:
-    """Hollow a model and put its G-code in place of the one given.
+    """Hollow a model and replace a G-code by the print of the part.
 
     Parameters
     ----------
-    profile : what the G-code's own settings go over;  lean : as ``hollow`` takes it.
-    placement : how the model lay when it was sliced.
+    profile : the limits; settings in the G-code come first;  lean : as in ``hollow``.
+    placement : how the model was placed when it was sliced.
 
     Raises
     ------
-    InputError : the G-code cannot be sliced anew without loss;  ToolError : the slicer failed, or
-        what it made is not the part that was computed.  The G-code is then as it was.
+    InputError : the G-code cannot be sliced again without a loss;  ToolError : the slicer failed,
+        or its print differs from the computed part.  The G-code is then unchanged.
     """
     from printprep.pipeline.hollow import hollow_with
     from printprep.pipeline.options import FillOptions
@@ -75,22 +75,22 @@ def reslice(
     before = measured(gcode)
     _refuse_what_would_be_lost(gcode, before)
     program = find_slicer(slicer)
-    found = load_profile(profile, overrides_from(before.slicer_summary.settings))
-    solid = prepare(model, found, placement, progress).solid.manifold
+    limits = load_profile(profile, overrides_from(before.slicer_summary.settings))
+    solid = prepare(model, limits, placement, progress).solid.manifold
     if not same_size(np.ptp(np.reshape(solid.bounding_box(), (2, 3)), 0), before):
         raise InputError(
-            f"{gcode.name}: prints something of another size than {model.name}; {_LEFT}",
-            "give --up, --units and the size it was sliced in; turned or scaled in the slicer, "
-            "it cannot be found again",
+            f"{gcode.name} is unchanged: it prints another size than {model.name}.",
+            "Give --up, --units and the size that was sliced. A model that was turned or scaled in "
+            "the slicer cannot be used.",
         )
     at = (before.bounds_mm.mean(axis=0)[0], before.bounds_mm.mean(axis=0)[1])
     with guarded(), tempfile.TemporaryDirectory(prefix="printprep-") as name:
         folder = Path(name)
-        settings = _density(before, found)
+        settings = _density(before, limits)
         with progress.stage("slice-solid"):
             plain = _sliced_as_it_is(program, solid, at, settings, gcode, folder)
         _refuse_another(gcode, model, before, plain)
-        result = hollow_with(model, found, placement, FillOptions(lean=lean), progress)
+        result = hollow_with(model, limits, placement, FillOptions(lean=lean), progress)
         with progress.stage("slice"):
             new, judged = _sliced_hollow(program, result, at, settings, gcode, folder)
         _refuse_unsound(gcode, before, judged)
@@ -99,30 +99,30 @@ def reslice(
 
 
 def overrides_from(settings: Mapping[str, str]) -> dict[str, object]:
-    """A G-code's settings as keys of a profile.  Raises InputError where it carries none."""
+    """The settings of a G-code as profile keys.  Raises InputError if it carries none."""
     nozzle, layer = numbers(settings, "nozzle_diameter"), numbers(settings, "layer_height")
     if not (nozzle and layer):
         raise InputError(
-            f"The G-code carries no PrusaSlicer settings; {_LEFT}",
-            "use the hook from PrusaSlicer, or hollow the model first: printprep hollow",
+            "The G-code is unchanged: it carries no PrusaSlicer settings.",
+            "Use the hook from PrusaSlicer, or hollow the model first with `printprep hollow`.",
         )
-    found: dict[str, object] = {
+    keys: dict[str, object] = {
         "process": "fdm",
         "printer.nozzle_mm": nozzle[0],
         "printer.layer_height_mm": layer[0],
         "printer.first_layer_mm": _first_layer(settings, layer[0]),
-        # Automatic widths are worked out only in the comments at the G-code's head
+        # The slicer writes automatic widths only into the comments at the head of the G-code.
         "printer.line_width_mm": next(
             iter(numbers(settings, "perimeters extrusion width")), 1.125 * nozzle[0]
         ),
     }
     density = numbers(settings, "filament_density")
     if density and density[0] > 0:
-        found["material.density_g_cm3"] = density[0]
+        keys["material.density_g_cm3"] = density[0]
     bed = _bed(settings)
     if bed is not None:
-        found["printer.bed_mm"] = bed
-    return found
+        keys["printer.bed_mm"] = bed
+    return keys
 
 
 def _first_layer(settings: Mapping[str, str], layer_mm: float) -> float:
@@ -150,41 +150,44 @@ def _refuse_what_would_be_lost(gcode: Path, printed: Printed) -> None:
         lost.append("a wipe tower")
     if lost:
         raise InputError(
-            f"{gcode.name}: prints {' and '.join(lost)}, which would be lost; {_LEFT}",
-            "export each object by itself, with one extruder",
+            f"{gcode.name} is unchanged: it prints {' and '.join(lost)}, which would be lost.",
+            "Export each object by itself, with one extruder.",
         )
 
 
 def _refuse_another(gcode: Path, model: Path, before: Printed, plain: Printed) -> None:
     limit = _SAME_SHARE * before.filament_mm3
-    mine, other = before.feature_volume_mm3, plain.feature_volume_mm3
+    volumes, plain_volumes = before.feature_volume_mm3, plain.feature_volume_mm3
     differ = [
         feature
-        for feature in sorted({*mine, *other} - {"custom", "skirt", "brim"})
-        if abs(mine.get(feature, 0.0) - other.get(feature, 0.0)) > limit
+        for feature in sorted({*volumes, *plain_volumes} - {"custom", "skirt", "brim"})
+        if abs(volumes.get(feature, 0.0) - plain_volumes.get(feature, 0.0)) > limit
     ]
     if differ:
         raise InputError(
-            f"{gcode.name}: {model.name} with the same settings prints differently "
-            f"({', '.join(differ)}): modifiers, painting, settings of the object or other objects "
-            f"would be lost; {_LEFT}",
-            "hollow the model first (printprep hollow), and slice the 3MF with these settings",
+            f"{gcode.name} is unchanged: {model.name} with the same settings prints differently "
+            f"({', '.join(differ)}), so modifiers, painting, object settings or other objects "
+            "would be lost.",
+            "Hollow the model first with `printprep hollow`, and slice the 3MF with these "
+            "settings.",
         )
 
 
 def _refuse_unsound(gcode: Path, before: Printed, judged: JudgedPrint) -> None:
-    wrong = [item.message for item in judged.findings if item.severity == "error"]
-    wrong += [item.message for item in judged.findings if item.rule == "filament-count"]
+    faults = [item.message for item in judged.findings if item.severity == "error"]
+    faults += [item.message for item in judged.findings if item.rule == "filament-count"]
     heavier = judged.printed.filament_mm3 >= before.filament_mm3
     if heavier and not list(tips(before, judged.lean)):
-        wrong.append("It would take more filament, and the print as it is stands.")
-    if wrong:
-        raise ToolError(f"{gcode.name}: hollow, it is not as computed; {_LEFT}", " ".join(wrong))
+        faults.append("It takes no less filament, and the solid print stands already.")
+    if faults:
+        raise ToolError(
+            f"{gcode.name} is unchanged: the print of the hollowed part is not good enough.",
+            " ".join(faults),
+        )
 
 
 def _density(before: Printed, profile: Profile) -> dict[str, str]:
-    slicer_summary = numbers(before.slicer_summary.settings, "filament_density")
-    if any(slicer_summary):
+    if any(numbers(before.slicer_summary.settings, "filament_density")):
         return {}
     return {"filament_density": f"{profile.material.density_g_cm3:g}"}
 
@@ -224,7 +227,7 @@ def _sliced_hollow(
 
 
 def _write_part(result: HollowResult, at: tuple[float, float], target: Path) -> ComputedPart:
-    """The part as a 3MF that puts it where the print was."""
+    """The part as a 3MF that puts it in the place of the print."""
     from printprep.mesh.quantize import quantized
     from printprep.output.item import solid_item
     from printprep.output.numbers import to_text

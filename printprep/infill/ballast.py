@@ -1,8 +1,8 @@
-"""Find the ballast: the program on what infill weighs, corrected by what the slicer deposits.
+"""Finds the ballast: solves the program with estimated infill, corrected by real prints.
 
-Sparse infill is the slicer's own affair, so where a slicer is at hand it is asked: once without
-ballast, whose deposited moments replace the estimate, then with the ballast that these call for,
-until the print stands at the lean.
+Only the slicer knows what its infill weighs.  If there is one, the part is sliced without ballast,
+and the moments of that print replace the estimate.  Then it is sliced with the ballast that follows
+from them, until the print stands at the lean.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from printprep.types import Density, Lean, Part, Solid, Stability
 
 
-# A print that stands this much farther than it was solved for has ballast to spare.
+# A print that stands this much farther than it was solved for has more ballast than needed.
 SPARE_DEG = 0.3
-# Out of reach, this near to what was solved for is near enough.
+# Where the lean is out of reach, the print must come this close to what was solved for.
 NEAR_DEG = 0.1
 MOST_PRINTS = 5
 
@@ -39,7 +39,8 @@ MOST_PRINTS = 5
 class Ballasted:
     """A part with its ballast.
 
-    moments : (4,) mm³ and mm⁴ of the whole print;  ballast_mm3 : what the ballast adds to it.
+    moments : (4,) volume in mm³ and first moments x, y, z in mm⁴ of the whole print.
+    ballast_mm3 : volume that the ballast adds.
     """
 
     density: Density
@@ -51,7 +52,7 @@ class Ballasted:
 
 
 def estimated_ballast(solid: Solid, program: Program, choice: Choice, sparse: float) -> Ballasted:
-    """A choice as it is weighed without a slicer; sparse : density of what is not filled."""
+    """The ballast of a choice, without a slicer.  sparse : density of what is not filled."""
     moments = sum((part.moments for part in choice.parts), np.zeros(4))
     return Ballasted(
         density=density_of(choice, program, sparse),
@@ -71,9 +72,9 @@ def weighed_ballast(
     sparse: float,
     trial_slicer: TrialSlicer,
 ) -> Ballasted | None:
-    """The lightest filling found whose print stands at the lean, measured in its G-code.
+    """The lightest filling whose print stands at the lean, measured in its G-code.
 
-    None where nothing of some body touches the bed: a slicer may refuse it.
+    None if some body does not touch the bed: a slicer may refuse it.
     """
     choice = program.choose(policy, lean)
     if any(part.solution is None for part in choice.parts):
@@ -82,16 +83,16 @@ def weighed_ballast(
     program = _corrected(program, choice, bare.moments - program.unfilled(choice.base))
     unballasted = program
     margin = program.profile.stability.lean_margin_deg
-    # With several bodies another base might join them otherwise.
-    one = len(program.bodies) == 1
-    choice = program.choose(policy, lean) if one else program.solve(choice.base, lean, margin)
+    # With several bodies, another base could join them differently.
+    single = len(program.bodies) == 1
+    choice = program.choose(policy, lean) if single else program.solve(choice.base, lean, margin)
     best: Ballasted | None = None
     for _ in range(MOST_PRINTS):
         density, part = density_of(choice, program, sparse), make_part(solid, choice.base, ())
         ballast = _ballast(program, choice)
         printed = trial_slicer.weigh(part, ballast, _apart(program, choice))
         added_mm3 = (printed.moments - unballasted.unfilled(choice.base)).sum(axis=0)[0]
-        found = Ballasted(
+        ballasted = Ballasted(
             density=density,
             part=part,
             ballast=ballast,
@@ -99,12 +100,12 @@ def weighed_ballast(
             ballast_mm3=float(added_mm3) if ballast else 0.0,
             stability=least_stable(printed.stabilities),
         )
-        best = found if best is None else _better(best, found, lean)
-        aim, tilt = density.aim_deg, tilt_toward(found.stability, lean)
+        best = ballasted if best is None else _better(best, ballasted, lean)
+        aim, tilt = density.aim_deg, tilt_toward(ballasted.stability, lean)
         if aim is None or tilt is None:
             break
         lost_deg = _by_sections(program, choice, printed, lean) - tilt
-        # Out of reach, what beads lose against the section cannot be made up for
+        # Out of reach, nothing makes up for what the beads lose against the section.
         goal = lean.angle_deg if choice.reached == np.inf else aim - max(lost_deg, 0.0) - NEAR_DEG
         if tilt >= goal and not (ballast and tilt > aim + SPARE_DEG):
             break
@@ -115,7 +116,7 @@ def weighed_ballast(
 
 
 def stability_of_choice(program: Program, choice: Choice) -> Stability:
-    """How a choice stands by its moments: its weakest body."""
+    """How the least stable body of a choice stands, by its moments."""
     each = []
     for (_, section, _), part in zip(
         program.bodies_on_base(choice.base), choice.parts, strict=True
@@ -126,10 +127,10 @@ def stability_of_choice(program: Program, choice: Choice) -> Stability:
 
 
 def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean) -> float:
-    """The tilt angle of a print by the sections of its feet, instead of their beads."""
+    """The tilt angle of a print with the sections of its feet instead of their beads."""
     each = [
-        balanced(contact_of(section), found.centre_of_mass_mm)
-        for (_, section, _), found in zip(
+        balanced(contact_of(section), body.centre_of_mass_mm)
+        for (_, section, _), body in zip(
             program.bodies_on_base(choice.base), printed.stabilities, strict=True
         )
     ]
@@ -140,7 +141,7 @@ def _by_sections(program: Program, choice: Choice, printed: Weighed, lean: Lean)
 
 def _ballast(program: Program, choice: Choice) -> tuple[Manifold, ...]:
     """The solids that print dense: each body below its plane."""
-    found = []
+    solids = []
     for part in choice.parts:
         plane = None if part.solution is None else part.solution.plane
         if plane is None:
@@ -149,27 +150,30 @@ def _ballast(program: Program, choice: Choice) -> tuple[Manifold, ...]:
             body = program.bodies[cell]
             below = body.trim_by_plane([-value for value in plane.normal], -plane.offset_mm)
             if not below.is_empty():
-                found.append(below)
-    return tuple(found)
+                solids.append(below)
+    return tuple(solids)
 
 
 def _apart(program: Program, choice: Choice) -> tuple[Manifold, ...]:
-    """What stands by itself, a solid each, in the order of the choice's parts."""
+    """The solids that stand by themselves, in the order of the choice's parts."""
     return tuple(together([program.bodies[cell] for cell in part.cells]) for part in choice.parts)
 
 
 def _corrected(program: Program, choice: Choice, difference: Float) -> Program:
-    """The program with (k, 4) more on what stands by itself; whichever body of it is the same."""
+    """The program with moments added to each part of the choice.
+
+    difference : (k, 4) mm³ and mm⁴, one row for each part; it goes to the part's first body.
+    """
     moments = list(program.moments)
-    for part, more in zip(choice.parts, difference, strict=True):
-        moments[part.cells[0]] = moments[part.cells[0]] + more
+    for part, added in zip(choice.parts, difference, strict=True):
+        moments[part.cells[0]] = moments[part.cells[0]] + added
     return program.weighing(moments)
 
 
 def _better(first: Ballasted, second: Ballasted, lean: Lean) -> Ballasted:
-    """The lighter of two that stand, else the one that stands farther."""
-    tilts = [tilt_toward(found.stability, lean) for found in (first, second)]
-    one, other = (-np.inf if tilt is None else tilt for tilt in tilts)
-    if min(one, other) >= lean.angle_deg:
+    """The lighter one if both stand, else the one that stands farther."""
+    tilts = [tilt_toward(ballasted.stability, lean) for ballasted in (first, second)]
+    first_deg, second_deg = (-np.inf if tilt is None else tilt for tilt in tilts)
+    if min(first_deg, second_deg) >= lean.angle_deg:
         return second if second.moments[0] < first.moments[0] else first
-    return second if other > one else first
+    return second if second_deg > first_deg else first

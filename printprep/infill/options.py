@@ -1,4 +1,4 @@
-"""Which profiles and options go with an infill print: found out before the long work."""
+"""Which profiles and options go with an infill print, checked before the long work."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ if TYPE_CHECKING:
 
 
 def check_infill(profile: Profile, *, objective: str, self_support: bool) -> None:
-    """Raise UsageError where an option belongs to cavities, or the profile has no infill."""
+    """Raise UsageError if an option is for cavities only, or if the profile has no infill."""
     if not profile.traits.has_nozzle:
         raise UsageError(
             f"Profile {profile.name} is for {profile.process}, which prints without infill.",
-            "Leave out --fill, or choose a profile for filament.",
+            "Use --fill cavity, or choose a profile for filament.",
         )
     if profile.infill is None:
         raise UsageError(
             f"Profile {profile.name} has no infill.",
-            "Add a table [infill] with pattern and density to it, or set them: "
-            "--set infill.pattern=lightning --set infill.density=0.15.",
+            "Set pattern and density, in a table [infill] of the profile or with --set "
+            "infill.pattern=lightning --set infill.density=0.15.",
         )
     if objective != "lean":
         raise UsageError(
-            f"The objective {objective} makes cavities; it has no sparse infill.",
+            f"The objective {objective} makes only cavities, not infill.",
             "Leave out --objective, or use --fill cavity.",
         )
     if self_support:
         raise UsageError(
-            "With infill there is no cavity to support: the infill carries the ceilings.",
+            "--self-support has no effect with infill: the infill carries the ceilings.",
             "Leave out --self-support, or use --fill cavity.",
         )
     if profile.drain.count:
         raise UsageError(
-            "With infill there is no cavity to drain.",
-            "Leave out --drains (key drain.count), or use --fill cavity.",
+            "A part with infill has no cavities to drain.",
+            "Leave out --drains (profile key drain.count), or use --fill cavity.",
         )

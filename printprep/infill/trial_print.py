@@ -1,4 +1,4 @@
-"""A print to be weighed: the part goes through the real slicer, and its G-code is measured."""
+"""Weighs a trial print: the part is sliced with the real slicer, and its G-code is measured."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
-    """What a print deposits, and how it stands, by what of it stands apart.
+    """What a print deposits and how it stands, for each solid that stands by itself.
 
-    moments : (k, 4) mm³ and mm⁴, in the part's coordinates;  standings : one each.
+    moments : (k, 4) volume in mm³ and first moments x, y, z in mm⁴, in the part's coordinates.
+    stabilities : one for each of the k solids.
     """
 
     moments: Float
@@ -33,7 +34,7 @@ class Weighed:
 
 
 class TrialSlicer:
-    """Slices parts with one profile, the same file once only."""
+    """Slices parts with one profile, and each file only once."""
 
     def __init__(self, slicer: Slicer, profile: Profile) -> None:
         self.slicer = slicer
@@ -42,15 +43,15 @@ class TrialSlicer:
 
     @property
     def slices(self) -> int:
-        """How often the slicer was asked."""
+        """How often the slicer ran."""
         return len(self._known)
 
     def weigh(self, part: Part, ballast: Sequence[Manifold], apart: Sequence[Manifold]) -> Weighed:
         """Slice a part and measure it.
 
-        apart : what of it does not touch, a solid each; beads of a base go to the nearest.
+        apart : the solids that stand by themselves; beads of a base go to the nearest one.
 
-        Raises ToolError where the slicer refuses it, InputError where it has no first layer.
+        Raises ToolError if the slicer refuses the part, InputError if the print has no first layer.
         """
         from printprep.threemf.write import write_3mf
 
@@ -62,6 +63,7 @@ class TrialSlicer:
         return self._known[content]
 
     def _measured(self, content: bytes, at_mm: Float, apart: Sequence[Manifold]) -> Weighed:
+        """Slice a 3MF and measure it.  at_mm : (3,) place of the part's origin on the bed."""
         from printprep.gcode.measure import measure_gcode
         from printprep.gcode.stability import stability_of_print
         from printprep.slicer.prusa_ini import profile_settings
@@ -75,14 +77,15 @@ class TrialSlicer:
         mm3 = printed.volume_mm3 / printed.mass_g
         moments, stabilities = [], []
         for body in printed.bodies or (printed,):
-            found = stability_of_print(body)
-            centre = np.array(found.centre_of_mass_mm) - at_mm
+            on_bed = stability_of_print(body)
+            centre = np.array(on_bed.centre_of_mass_mm) - at_mm
             moments.append(body.mass_g * mm3 * np.array([1.0, *centre]))
             x, y, z = centre.tolist()
-            polygon = found.support_polygon_mm - at_mm[:2]
             stabilities.append(
                 replace(
-                    found, support_polygon_mm=polygon, centre_of_mass_mm=(x, y, z + float(at_mm[2]))
+                    on_bed,
+                    support_polygon_mm=on_bed.support_polygon_mm - at_mm[:2],
+                    centre_of_mass_mm=(x, y, z + float(at_mm[2])),
                 )
             )
         return Weighed(np.stack(moments), tuple(stabilities))

@@ -1,8 +1,8 @@
-"""The figures of a part, as its file carries them and ``verify`` and the hook read them back.
+"""The figures of a part, as its file carries them and as ``verify`` and the hook read them.
 
-One frozen class is both sides: ``figures.to_json()`` is written into the 3MF, and
-``Figures.from_json`` reads it again and refuses what it does not know.  Nothing in it depends on
-time, path, user or machine, so that the same input gives the same bytes.
+``figures.to_json()`` is written into the 3MF; ``Figures.from_json`` reads it and refuses an unknown
+version.  Nothing in it depends on time, path, user or machine, so that the same input gives the
+same bytes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from printprep.output.numbers import plain
 from printprep.types import Advice, AlternativeFill, Certificate, Drain, Finding, Repair
 
 FORMAT = 1
-"""Version of the keys.  A reader refuses another; a key that changes its meaning raises it."""
+"""Version of the keys.  It grows when a key changes its meaning; a reader refuses another one."""
 
 Place = tuple[float, float, float]
 Row = tuple[float, float, float, float]
@@ -35,7 +35,7 @@ class ContactFigures:
 
 @dataclass(frozen=True)
 class Cavity:
-    """One sealed or drained cavity; bounds_mm : low and high corner."""
+    """One sealed or drained cavity.  bounds_mm : low and high corner."""
 
     volume_mm3: float
     bounds_mm: tuple[Place, Place]
@@ -43,7 +43,7 @@ class Cavity:
 
 @dataclass(frozen=True)
 class Cavities:
-    """All cavities, in the part's order."""
+    """All cavities, in the order of the part."""
 
     count: int
     items: tuple[Cavity, ...]
@@ -51,7 +51,7 @@ class Cavities:
 
 @dataclass(frozen=True)
 class Vaults:
-    """What carries ceilings from inside, over all the hollowable volume."""
+    """The vaults that carry the ceilings, in the whole hollowable volume."""
 
     capitals: int
     columns: int
@@ -63,7 +63,7 @@ class Vaults:
 
 @dataclass(frozen=True)
 class Drains:
-    """Holes, what of floors was filled, and the volumes of cavities that no hole opens."""
+    """Drain holes, the filled volume of floors, and the volumes of cavities that no hole drains."""
 
     count: int
     items: tuple[Drain, ...]
@@ -73,7 +73,7 @@ class Drains:
 
 @dataclass(frozen=True)
 class SparseInfill:
-    """The slicer's infill; weighed_with : the slicer whose G-code was weighed, None: estimated."""
+    """The slicer's infill.  weighed_with : the slicer whose G-code was weighed, None: estimated."""
 
     pattern: str
     density: float
@@ -86,7 +86,7 @@ class SparseInfill:
 
 @dataclass(frozen=True)
 class BaseFigures:
-    """How far feet are seated, the footprint grown, and what the base adds to the model."""
+    """Height of the seat, growth of the footprint, and the mass that the base adds."""
 
     seat_mm: float
     growth_mm: float
@@ -95,11 +95,12 @@ class BaseFigures:
 
 @dataclass(frozen=True)
 class Figures:
-    """What was computed of a part; lengths in mm, masses in g, angles in degrees.
+    """The computed figures of a part; lengths in mm, masses in g, angles in degrees.
 
-    printprep : version;  settings : the profile's keys;  placement : (4, 4), file → part.
-    mass_ratio : of the solid;  bounds_mm : low and high corner;  contact : None without any;
-    bodies : how many do not touch each other;  tilt_deg : None without contact.
+    printprep : version;  settings : the profile's keys.
+    placement : (4, 4) rows, model's file → part.
+    mass_ratio : mass over that of the solid;  bounds_mm : low and high corner.
+    contact, tilt_deg : None without contact;  bodies : number of bodies that do not touch.
     """
 
     printprep: str
@@ -134,7 +135,7 @@ class Figures:
     format: Annotated[int, Field(ge=FORMAT, le=FORMAT)] = FORMAT
 
     def to_json(self) -> dict[str, Any]:
-        """As plain values, the version of the keys first."""
+        """The figures as plain values, the version of the keys first."""
         values = plain(self)
         return {"format": values.pop("format"), **values}
 
@@ -142,8 +143,8 @@ class Figures:
     def from_json(cls, text: bytes | str) -> Figures:
         """Read what ``to_json`` wrote.
 
-        Raises ValueError, in one line, for text that is no such JSON, lacks a key, is of another
-        version, or holds a number that is not finite.
+        Raises ValueError, in one line, for text that is not JSON, lacks a key, has another version,
+        or holds a number that is not finite.
         """
         try:
             data = json.loads(text, parse_constant=_finite, parse_float=_finite)

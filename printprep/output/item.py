@@ -1,4 +1,4 @@
-"""The part in a 3MF: a solid mesh, and where infill fills it a modifier over what prints dense."""
+"""The part as an item of a 3MF: a solid mesh, and with infill a modifier for the ballast."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 def solid_item(
     part: Manifold, name: str, profile: Profile, at_mm: tuple[float, float] | None = None
 ) -> Item:
-    """A part that prints as its mesh says, cavities as inverted shells.
+    """A part that prints exactly as its mesh, cavities as inverted shells.
 
-    part : quantized;  at_mm : where its origin goes, None for the middle of the bed.
+    part : quantized;  at_mm : place (x, y) of its origin, None for the middle of the bed.
     """
     vertices, faces = quantized_arrays(part)
     x, y = middle_of_bed(profile) if at_mm is None else at_mm
@@ -35,8 +35,7 @@ def solid_item(
 def infill_item(part: Manifold, ballast: Sequence[Manifold], name: str, profile: Profile) -> Item:
     """A part with the slicer's infill inside, in the middle of the bed.
 
-    part : quantized;  ballast : solids inside it or reaching out of it; where two modifiers
-    overlap the slicer prints once.
+    part : quantized;  ballast : solids, which may reach out of the part and may overlap.
     """
     vertices, faces = quantized_arrays(part)
     volumes = [Volume(name, vertices, faces)]
@@ -54,6 +53,6 @@ def infill_item(part: Manifold, ballast: Sequence[Manifold], name: str, profile:
 
 
 def middle_of_bed(profile: Profile) -> tuple[float, float]:
-    """Where a part's origin goes, (x, y) in mm."""
+    """The middle of the bed, (x, y) in mm."""
     width, depth, _ = profile.printer.bed_mm
     return width / 2, depth / 2

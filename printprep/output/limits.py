@@ -1,4 +1,4 @@
-"""What a file format, or a slicer, cannot take from a part: found out before the long work."""
+"""What a file format or a slicer cannot carry, checked before the long work."""
 
 from __future__ import annotations
 
@@ -17,32 +17,33 @@ SUFFIXES = (".3mf", ".stl", ".obj", ".ply")
 
 
 def check_output(path: Path) -> None:
-    """Find out before the long work whether a part can be written to ``path``.
+    """Check before the long work that a part can be written to ``path``.
 
-    Raises UsageError for an unknown suffix, OutputError for a folder that is missing, is not
-    writable, or stands where the file should.
+    Raises UsageError for an unknown suffix, OutputError if ``path`` is a folder, or if its folder
+    is missing or not writable.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise UsageError(
-            f"{path}: {path.suffix or 'a name without a suffix'} is not a format printprep writes.",
+            f"{path}: {path.suffix or 'a name without a suffix'} is not a format that printprep "
+            "writes.",
             f"Use one of {', '.join(SUFFIXES)}; .3mf carries the print settings.",
         )
     check_writable(path)
 
 
 def check_writable(path: Path) -> None:
-    """Raise OutputError where a file cannot be written: no such folder, or not writable."""
+    """Raise OutputError if a file cannot be written: a folder is missing, or not writable."""
     if path.is_dir():
         raise OutputError(f"{path} is a folder, not a file.", "Name a file inside it.")
     if not path.parent.is_dir():
         raise OutputError(
             f"{path} cannot be written: the folder {path.parent} does not exist.",
-            "Make the folder first, or name another one.",
+            "Create the folder first, or name another one.",
         )
     if not os.access(path.parent, os.W_OK):
         raise OutputError(
             f"{path} cannot be written: the folder {path.parent} is not writable.",
-            "Name a folder you may write to.",
+            "Name a folder that you may write to.",
         )
 
 
@@ -50,12 +51,12 @@ def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:
     """Raise UsageError for a file that cannot carry infill and ballast."""
     if suffix.lower() != ".3mf":
         raise UsageError(
-            f"A {suffix} file cannot carry infill and its ballast.",
-            "Name an --output that ends with .3mf.",
+            f"A {suffix} file cannot carry infill and ballast.",
+            "Name an --output that ends in .3mf.",
         )
     if slicer != "prusa":
         raise UsageError(
-            f"Infill and its ballast can be written for PrusaSlicer only, not for {slicer}.",
+            f"Infill and ballast can be written only for PrusaSlicer, not for {slicer}.",
             "Leave out --for, or use --fill cavity.",
         )
 
@@ -63,7 +64,7 @@ def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:
 def format_findings(
     profile: Profile, path: Path, slicer: SlicerName = "prusa"
 ) -> tuple[Finding, ...]:
-    """Which of the profile's settings the file at ``path`` cannot carry."""
+    """The profile's settings that the file at ``path`` cannot carry, as findings."""
     if slicer != "prusa":
         return (_manual_settings(profile, slicer),)
     suffix = path.suffix.lower()
@@ -75,7 +76,7 @@ def format_findings(
             "no-settings",
             f"A {suffix} file carries no print settings. Mass and tilt angle hold only with "
             f"these: {settings}.",
-            "Write a .3mf, or enter them in the slicer.",
+            "Write a .3mf file, or enter these settings in the slicer.",
         ),
     )
 
@@ -88,5 +89,5 @@ def _manual_settings(profile: Profile, slicer: SlicerName) -> Finding:
         "set-by-hand",
         f"{program} takes only the shape from this file. Mass and tilt angle hold only with "
         f"these settings: {'; '.join(settings)}.",
-        "Enter them before you slice.",
+        "Enter these settings before you slice.",
     )

@@ -1,6 +1,6 @@
-"""What a user has to set by hand in a slicer that takes only the shape from our file.
+"""The settings to enter by hand in a slicer that takes only the shape from a file.
 
-Setting names are the English ones of OrcaSlicer 2 and BambuStudio, and of Cura 4.13.
+Their names are the English ones of OrcaSlicer 2 and BambuStudio, and of Cura 4.13.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ SLICERS: tuple[SlicerName, ...] = get_args(SlicerName)
 
 
 @dataclass(frozen=True)
-class _Words:
-    """How a slicer calls things.
+class _Vocabulary:
+    """The names that a slicer has for settings.
 
-    layer, first_layer, width : its names of lengths;  keys : what stands for a PrusaSlicer setting
-    of the object, and for which value of it ("" for every one);  always : what else keeps the
-    print what was computed.
+    layer, first_layer, width : for lengths.
+    keys : PrusaSlicer's key → the value that is translated ("" for any value), and the translation
+    (None if the slicer needs no such setting).
+    always : settings that keep any print as it was computed.
     """
 
     program: str
@@ -36,8 +37,8 @@ class _Words:
     always: tuple[str, ...] = field(default=())
 
 
-_WORDS: Mapping[str, _Words] = {
-    "orca": _Words(
+_VOCABULARIES: Mapping[str, _Vocabulary] = {
+    "orca": _Vocabulary(
         "OrcaSlicer or BambuStudio",
         "Layer height",
         "First (initial) layer height",
@@ -50,7 +51,7 @@ _WORDS: Mapping[str, _Words] = {
         },
         ("Elephant foot compensation 0 mm", "Slicing mode Regular"),
     ),
-    "cura": _Words(
+    "cura": _Vocabulary(
         "Cura",
         "Layer Height",
         "Initial Layer Height",
@@ -63,10 +64,10 @@ _WORDS: Mapping[str, _Words] = {
         },
         ("Initial Layer Horizontal Expansion 0 mm", "Remove All Holes off"),
     ),
-    "generic": _Words(
+    "generic": _Vocabulary(
         "The slicer",
         "layer height",
-        "first layer's height",
+        "first layer height",
         "line width",
         {
             "fill_density": ("100%", "infill 100 %"),
@@ -80,30 +81,30 @@ _WORDS: Mapping[str, _Words] = {
 
 
 def check_slicer(profile: Profile, slicer: SlicerName) -> None:
-    """Raises UsageError where there is no such slicer: the process is not fdm."""
+    """Raise UsageError if the profile's process does not go with a filament slicer."""
     if slicer != "prusa" and not profile.traits.has_nozzle:
         raise UsageError(
             f"--for {slicer} needs a filament profile; {profile.name} is for {profile.process}.",
-            "Leave --for out.",
+            "Leave out --for, or choose a profile for filament.",
         )
 
 
 def manual_settings(profile: Profile, slicer: SlicerName) -> tuple[str, list[str]]:
-    """What a slicer other than PrusaSlicer is called, and the settings it must be given."""
-    words = _WORDS[slicer]
-    return words.program, list(_settings(profile, words))
+    """The name of a slicer other than PrusaSlicer, and the settings to enter in it."""
+    vocabulary = _VOCABULARIES[slicer]
+    return vocabulary.program, list(_settings(profile, vocabulary))
 
 
-def _settings(profile: Profile, words: _Words) -> Iterator[str]:
+def _settings(profile: Profile, vocabulary: _Vocabulary) -> Iterator[str]:
     printer = profile.printer
-    yield f"{words.layer} {printer.layer_height_mm:g} mm"
-    yield f"{words.first_layer} {printer.first_layer_mm:g} mm"
+    yield f"{vocabulary.layer} {printer.layer_height_mm:g} mm"
+    yield f"{vocabulary.first_layer} {printer.first_layer_mm:g} mm"
     if printer.line_width_mm is not None:
-        yield f"{words.width} {printer.line_width_mm:g} mm"
+        yield f"{vocabulary.width} {printer.line_width_mm:g} mm"
     for key, value in profile.object_settings.items():
-        known, said = words.keys.get(key, (None, None))
+        known, translation = vocabulary.keys.get(key, (None, None))
         if known not in ("", value):
-            yield f"{key}={value} (in PrusaSlicer's words)"
-        elif said is not None:
-            yield said.format(value)
-    yield from words.always
+            yield f"{key}={value} (PrusaSlicer's name)"
+        elif translation is not None:
+            yield translation.format(value)
+    yield from vocabulary.always

@@ -1,4 +1,4 @@
-"""Numbers and places as JSON carries them: plain, finite, without digits that are only noise."""
+"""Numbers and points as JSON carries them: plain, finite, without meaningless digits."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from typing import Any
 
 
 def number(value: float | None, digits: int = 6) -> float | None:
-    """A value to so many significant digits; None stays None.  Never −0."""
+    """A value rounded to significant digits, never −0; None stays None."""
     return None if value is None else rounded(value, digits)
 
 
 def rounded(value: float, digits: int = 6) -> float:
-    """A value to so many significant digits, never −0."""
+    """A value rounded to significant digits, never −0."""
     return float(f"{value:.{digits}g}") + 0.0
 
 
 def place(point: Iterable[float], decimals: int = 3) -> tuple[float, float, float]:
-    """A point (x, y, z) in mm, to so many decimals, never −0."""
+    """A point (x, y, z) in mm, rounded to decimals, never −0."""
     x, y, z = (round(float(value), decimals) + 0.0 for value in point)
     return x, y, z
 
 
 def plain(value: Any) -> Any:
-    """A frozen value as JSON holds it: dataclasses as objects, tuples as lists."""
+    """A frozen value in JSON's types: dataclasses as objects, tuples as lists."""
     if is_dataclass(value) and not isinstance(value, type):
         return {item.name: plain(getattr(value, item.name)) for item in fields(value)}
     if isinstance(value, Mapping):
@@ -34,8 +34,8 @@ def plain(value: Any) -> Any:
 
 
 def to_text(data: Mapping[str, Any]) -> str:
-    """One JSON object, in ASCII so that any terminal and pipe takes it.
+    """A JSON object as text, in ASCII so that every terminal and pipe accepts it.
 
-    Raises ValueError for a number that is not finite: a sound report has none.
+    Raises ValueError for a number that is not finite.
     """
     return json.dumps(data, indent=2, allow_nan=False)

@@ -1,7 +1,7 @@
-"""The part as a file: 3MF with the settings it must be printed with, or bare triangles.
+"""The part as a file: a 3MF with its print settings, or only the triangles.
 
-Everything is written from one manifold, the one that was checked: float32 coordinates, welded,
-cavities as inverted shells of the same mesh, which is how slicers keep them hollow.
+Every format is written from the manifold that was checked: float32 coordinates, welded, cavities as
+inverted shells of the same mesh, so that slicers keep them hollow.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ THUMBNAIL_SIZE = 256  # pixels
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a file of a part is made from.
+    """Everything that a file of a part is made from.
 
-    infill : what the inside is where it is the slicer's infill, None for a part with cavities.
+    infill : the slicer's infill inside the part, None for a part with cavities.
     """
 
     part: Part
@@ -37,14 +37,14 @@ class Contents:
 
 
 def write_part(contents: Contents, path: str | Path, slicer: SlicerName = "prusa") -> None:
-    """Write a part whole or not at all; the suffix chooses the format.
+    """Write a part in one step; the suffix chooses the format.
 
-    slicer : whose settings go into a 3MF; all but PrusaSlicer take only the shape from it.
+    slicer : the slicer to write a 3MF for; only PrusaSlicer's settings can be in it.
 
     Raises
     ------
     UsageError : a suffix other than .3mf, .stl, .obj, .ply.
-    OutputError : the file cannot be written there; what was there before is then untouched.
+    OutputError : the file cannot be written; an existing file is then unchanged.
     """
     from printprep.files import write_atomically
 
@@ -54,7 +54,7 @@ def write_part(contents: Contents, path: str | Path, slicer: SlicerName = "prusa
 
 
 def part_bytes(contents: Contents, suffix: str, slicer: SlicerName = "prusa") -> bytes:
-    """The file's content; the same contents and version give the same bytes.
+    """The content of the file; the same contents and version give the same bytes.
 
     Raises UsageError for a suffix or slicer that cannot carry the infill.
     """

@@ -1,4 +1,4 @@
-"""The plugs of a part's drains as a 3MF, each an object of its own, in a row on the bed."""
+"""The plugs for a part's drain holes as a 3MF, each as its own object, in rows on the bed."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.types import Drainage, Part
 
-# Between two plugs, so that a slicer keeps their brims apart.
+# The gap between two plugs, wide enough for their brims.
 GAP_MM = 5.0
 
 
 def write_plugs(part: Part, drainage: Drainage, profile: Profile, path: str | Path) -> None:
-    """Write a plug for every drain, whole or not at all.
+    """Write a plug for every drain hole, in one step.
 
-    Raises OutputError where the file cannot be written there, ValueError for a part without drains.
+    Raises OutputError if the file cannot be written, ValueError for a part without drain holes.
     """
     from printprep.files import write_atomically
 
@@ -24,9 +24,9 @@ def write_plugs(part: Part, drainage: Drainage, profile: Profile, path: str | Pa
 
 
 def plugs_3mf(part: Part, drainage: Drainage, profile: Profile) -> bytes:
-    """The file's content; the same part and version give the same bytes.
+    """The content of the file; the same part and version give the same bytes.
 
-    Raises ValueError for a part without drains.
+    Raises ValueError for a part without drain holes.
     """
     from printprep.drainage.plugs import plug
     from printprep.mesh.quantize import quantized, quantized_arrays
@@ -35,7 +35,7 @@ def plugs_3mf(part: Part, drainage: Drainage, profile: Profile) -> bytes:
 
     drains = drainage.drains
     if not drains:
-        raise ValueError(f"{part.name} has no drains to plug")
+        raise ValueError(f"{part.name} has no drain holes to plug")
     width, depth, _ = profile.printer.bed_mm
     pitch = max(drain.diameter_mm for drain in drains) + GAP_MM
     each_row = max(1, int((width - GAP_MM) // pitch))

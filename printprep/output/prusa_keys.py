@@ -1,7 +1,7 @@
-"""An infill print in the slicer's words: what the object carries, and what its ballast does.
+"""PrusaSlicer's keys for an infill print: those of the object, and those of its ballast.
 
-Walls are lines: the first as wide as a line, each further one closer by the corners that a bead's
-round sides leave (Slic3r's flow math: spacing = width − height · (1 − π/4)).
+Walls are made of lines: the first adds a line's width, each further one a spacing, which is less
+because the sides of a bead are round (Slic3r's flow math: spacing = width − height · (1 − π/4)).
 """
 
 from __future__ import annotations
@@ -12,27 +12,27 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from printprep.profiles import Profile
 
-# Of a modifier's volume: dense, and so that neighbouring lines touch (slicer's rectilinear only)
+# The keys of a ballast modifier: dense, with lines that touch (only the rectilinear pattern does).
 DENSE = {"fill_density": "100%", "fill_pattern": "rectilinear"}
-# Only a part with cavities has to keep a slicer's supports out of them.
+# Keeps a slicer's supports out of cavities, so an infill print does not need it.
 _FOR_CAVITIES = "support_material_buildplate_only"
 
 
 def lines(profile: Profile) -> int:
-    """Perimeters: the profile's, else the least that are no thinner than its wall."""
+    """Number of perimeters: the profile's, or the least that are no thinner than its wall."""
     width_mm = profile.printer.line_width_mm
     assert width_mm is not None  # an fdm profile has one
-    asked = None if profile.infill is None else profile.infill.perimeters
-    return _count(profile.wall_mm, width_mm) if asked is None else asked
+    requested = None if profile.infill is None else profile.infill.perimeters
+    return _count(profile.wall_mm, width_mm) if requested is None else requested
 
 
 def layers(profile: Profile) -> int:
-    """Solid layers at top and bottom: the least that are no thinner than the profile's wall."""
+    """Number of solid layers at top and bottom: the least that are no thinner than the wall."""
     return _count(profile.wall_mm, profile.printer.layer_height_mm)
 
 
 def wall_keys(profile: Profile) -> dict[str, str]:
-    """The slicer's keys for walls as thick as the profile's."""
+    """The slicer's keys for walls as thick as the profile's wall."""
     return {
         "perimeters": str(lines(profile)),
         "top_solid_layers": str(layers(profile)),
@@ -41,8 +41,8 @@ def wall_keys(profile: Profile) -> dict[str, str]:
 
 
 def object_keys(profile: Profile) -> dict[str, str]:
-    """All that an object printed with the profile's infill carries."""
-    assert profile.infill is not None  # see :func:`printprep.infill.options.check_fill`
+    """All keys of an object that is printed with the profile's infill."""
+    assert profile.infill is not None  # see :func:`printprep.infill.options.check_infill`
     kept = {
         key: value for key, value in profile.slicer.object_settings.items() if key != _FOR_CAVITIES
     }
@@ -55,7 +55,7 @@ def object_keys(profile: Profile) -> dict[str, str]:
 
 
 def walls_mm(profile: Profile) -> tuple[float, float]:
-    """How thick the slicer's walls are: across, of lines, and upward, of layers."""
+    """Thickness of the slicer's walls in mm: sideways, of lines, and upward, of layers."""
     width_mm, layer_mm = profile.printer.line_width_mm, profile.printer.layer_height_mm
     assert width_mm is not None  # an fdm profile has one
     spacing_mm = width_mm - layer_mm * (1 - math.pi / 4)

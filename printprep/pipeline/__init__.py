@@ -1,1 +1,1 @@
-"""The way through the house: prepare, fill, advise, check; one job, from file to file."""
+"""The pipeline: prepare, fill, advise, check; and the job that runs one model from file to file."""

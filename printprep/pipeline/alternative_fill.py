@@ -1,4 +1,4 @@
-"""What the part would weigh with another fill: an estimate, on the same base, without a slicer."""
+"""The mass of the part with another fill, estimated with the same base and without a slicer."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def alternative_fill(
-    taken: str, prepared: Prepared, filled: Filled, lean: Lean
+    chosen: str, prepared: Prepared, filled: Filled, lean: Lean
 ) -> AlternativeFill | None:
-    """The lightest of the other fills; None where the profile has no infill to choose.
+    """The lightest fill other than ``chosen``; None where the profile has no infill.
 
     Vaults inside a cavity are not counted.
     """
@@ -26,7 +26,7 @@ def alternative_fill(
     base, grams_per_mm3 = filled.part.base, profile.material.density_g_cm3 / 1000
     others = []
     for name, fill in FILLS.items():
-        if name == taken:
+        if name == chosen:
             continue
         volume_mm3 = fill.estimate_mm3(prepared.solid, filled.depths, profile, base, lean)
         if volume_mm3 is not None:

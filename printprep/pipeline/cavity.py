@@ -1,8 +1,8 @@
 """The cavity: base, density, and the surface that is cut from the hollowable volume.
 
-The program sees voxels, the slicer sees a surface: cut at the plane, without the pieces too small
-to keep, simplified.  The part counts as standing only when that surface stands, so where the
-surface lost some lean the program is solved again.
+The linear program works on voxels; the slicer gets a surface that is cut at the plane, without
+pieces that are too small, and simplified.  The part stands only if it stands with that surface.
+Where the surface costs some tilt angle, the program is solved again.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
         Stability,
     )
 
-# A new solve aims higher by what was lost and this much more.
+# A new solve adds to the margin what was lost, and this much more.
 SAFETY_DEG = 0.02
 MOST_SOLVES = 6
 
@@ -52,7 +52,7 @@ MOST_SOLVES = 6
 def fill_with_cavity(
     prepared: Prepared, options: FillOptions, lean: Lean, clock: Stopwatch
 ) -> Filled:
-    """The lightest part that stands at the lean, hollow."""
+    """The lightest hollow part that stands at the lean."""
     volume = hollowable(prepared, options, clock)
     with clock.stage("base"):
         program = volume.program(prepared.solid)
@@ -83,7 +83,10 @@ def fill_with_cavity(
 
 @dataclass(frozen=True, eq=False)
 class Carved:
-    """A density, the part carved from it, how that stands and drains (None: no drains asked)."""
+    """A density, the part carved from it, and how the part stands and drains.
+
+    drainage : None where no drains are requested.
+    """
 
     density: Density
     part: Part
@@ -102,43 +105,44 @@ def solve_and_carve(
     solver: Solver,
     drainer: Drainer | None = None,
 ) -> Carved:
-    """The part of an objective whose final surface stands at the lean, where the objective aims.
+    """The part of an objective, solved until its final surface stands at the lean.
 
-    Where the lean is out of reach the part stands as far as the density says.  Drain holes and
-    what is filled for them are weighed: once they are known, the program is solved again with
-    them.
+    An objective that does not aim at the lean is solved once.  Where the lean is out of reach, the
+    part stands as far as the density says.  Drain holes and filled floors count: once they are
+    known, the program is solved again with them.
 
     Parameters
     ----------
     hollowable_volume : all that may be cavity;  choice : the base, and its first solution.
+    drainer : None where no drains are requested.
     """
     profile, undrilled, holes_weighed = program.profile, program, False
     margin_deg = profile.stability.lean_margin_deg
-    wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
+    next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
     for _ in range(MOST_SOLVES):
-        density = wanted
+        density = next_density
         part = carve(solid, choice.base, hollowable_volume, undrilled, density)
         drainage = None
         if drainer is not None:
             part, drainage = drainer.drain(part)
-        stands = stability(part.manifold, profile.printer.first_layer_mm)
+        part_stability = stability(part.manifold, profile.printer.first_layer_mm)
         if not objective.aims_at_lean:
             break
         if drainer is not None and drainage and not holes_weighed:
             holes_weighed = True
             if drainer.taken_mm3 > 0:
                 program = program.drilled(drainer.bores, hollowable_volume - drainer.filled)
-                wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
+                next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
                 continue
-        tilt_deg = tilt_toward(stands, lean)
+        tilt_deg = tilt_toward(part_stability, lean)
         out_of_reach = density.reachable_deg is not None
         if out_of_reach or tilt_deg is None or tilt_deg >= lean.angle_deg:
             break
         margin_deg += lean.angle_deg - tilt_deg + SAFETY_DEG
-        wanted = objective.on_solid(program, choice, lean, margin_deg, solver)
-        if wanted.aim_deg == density.aim_deg:
+        next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
+        if next_density.aim_deg == density.aim_deg:
             break
-    return Carved(density, part, stands, drainage)
+    return Carved(density, part, part_stability, drainage)
 
 
 def carve(
@@ -148,9 +152,9 @@ def carve(
     program: Program,
     density: Density,
 ) -> Part:
-    """The part with its cavity where the density leaves it empty.
+    """The part with its cavity where the density is empty.
 
-    program : the one that the solid was weighed in, before holes were drilled.
+    program : the one for the solid without drain holes.
     """
     planes: Sequence[Plane | None] = density.planes or (None,) * len(program.bodies)
     if density.planes is None:
@@ -160,10 +164,10 @@ def carve(
 
 
 def _below_half(density: Density, domain: Domain) -> Manifold:
-    """Where the free voxels' density is below one half, and walls do not count.
+    """The solid where the density of free voxels is below one half.
 
-    Voxels that are not free take the density of the nearest free one: the hollowable volume says
-    where the wall begins, far more finely than a voxel.
+    Other voxels take the density of the nearest free voxel: the hollowable volume bounds the wall,
+    far more finely than a voxel does.
     """
     from scipy.ndimage import distance_transform_edt
 

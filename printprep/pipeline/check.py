@@ -1,4 +1,4 @@
-"""Look at a file as it is: read, make a solid of it, weigh it, stand it up, run the rules."""
+"""Check a file as it is: read it, make it into a solid, weigh and balance it, run the rules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """A file, what the rules found in it, and the profile they judged by."""
+    """A checked file, its findings, and the profile that it was checked against."""
 
     context: CheckContext
     findings: tuple[Finding, ...]
@@ -26,7 +26,7 @@ class Checked:
 
     @property
     def mass_g(self) -> float:
-        """What the file weighs in the profile's material."""
+        """Mass of the file in the profile's material."""
         return float(self.context.part.volume()) * self.profile.material.density_g_cm3 / 1000
 
 
@@ -54,11 +54,11 @@ def check(
     from printprep.stand.stability import stability
 
     settings = load_profile(profile, overrides or {})
-    asked = lean_of(lean, settings.stability.lean_deg)
-    found = prepare(model, settings, placement, progress)
-    solid = found.solid
+    requested = lean_of(lean, settings.stability.lean_deg)
+    prepared = prepare(model, settings, placement, progress)
+    solid, part = prepared.solid, prepared.solid.manifold
     with progress.stage("check"):
-        stands = stability(solid.manifold, settings.printer.first_layer_mm)
-        context = context_of_solid(solid.manifold, stands, asked, solid.repair, found.model)
+        part_stability = stability(part, settings.printer.first_layer_mm)
+        context = context_of_solid(part, part_stability, requested, solid.repair, prepared.model)
         findings = run_rules(context, settings)
     return Checked(context, findings, settings)

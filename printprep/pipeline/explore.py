@@ -1,4 +1,4 @@
-"""What standing costs: the least mass for every lean, beside what one would print otherwise."""
+"""The least mass for every lean, and the usual parts to compare it with."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ DEFAULT = FillOptions()
 class Point:
     """The lightest filling that stands at a lean, at voxel resolution.
 
-    growth_mm : of the base's footprint, None without a base;  gap : of the certificate, relative.
+    growth_mm : how far the base grows the footprint, None without a base.
+    gap : the relative gap of its certificate.
     """
 
     lean_deg: float
@@ -39,7 +40,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Mark:
-    """Something to compare with: what it weighs, and the lean at which it tips, None: at once."""
+    """A part to compare with: its mass, and its tilt angle, None if it does not touch the bed."""
 
     name: str
     mass_g: float
@@ -48,7 +49,7 @@ class Mark:
 
 @dataclass(frozen=True, eq=False)
 class Exploration:
-    """The curve, its end (the largest lean any filling and base reaches), and the marks."""
+    """The curve, the largest lean that any filling on any base reaches, and the marks."""
 
     name: str
     profile: Profile
@@ -67,11 +68,11 @@ def explore(
     count: int = 13,
     progress: Progress = SILENT,
 ) -> Exploration:
-    """The Pareto curve of mass against lean, each point optimal and proven.
+    """The Pareto curve of mass against lean; each point is a proven optimum.
 
-    Parameters are those of :func:`printprep.hollow`; of the options resolution, base and
-    self_support matter.  ``count`` leans are solved, evenly from 0° to the largest that any filling
-    on any base reaches (at most 60°).
+    Parameters are those of :func:`printprep.hollow`; of the options only resolution, base and
+    self_support count.  ``count`` leans are solved, evenly spaced from 0° to the largest that any
+    filling on any base reaches (at most 60°).
 
     Raises
     ------
@@ -86,7 +87,9 @@ def explore(
     from printprep.types import Lean
 
     if not 2 <= count <= 200:
-        raise UsageError(f"A curve of {count} points is not between 2 and 200.")
+        raise UsageError(
+            f"A curve cannot have {count} points.", "Choose --points between 2 and 200."
+        )
     check_resolution(options.resolution)
     settings = load_profile(profile, {**(overrides or {}), "stability.lean_margin_deg": 0.0})
     supports_wanted(options.self_support, settings)
@@ -109,12 +112,12 @@ def explore(
         return Mark(name, part.volume() * grams, stability(part, first_layer_mm).tilt_deg)
 
     with progress.stage("cavity"):
-        # The paper's B is a base too: its objective is given the one that the profile's lean takes.
-        footed = program.choose(options.base, Lean(settings.stability.lean_deg))
-        paper = paper_density(program, footed.base)
+        # The paper has a base too, B: its objective gets the base chosen for the profile's lean.
+        base = program.choose(options.base, Lean(settings.stability.lean_deg)).base
+        paper = paper_density(program, base)
         empty = replace(paper, planes=(None,) * len(program.bodies))
         shell = carve(solid, None, volume.manifold, program, empty)
-        by_paper = carve(solid, footed.base, volume.manifold, program, paper)
+        by_paper = carve(solid, base, volume.manifold, program, paper)
         marks = (
             mark("solid", solid.manifold),
             mark("shell alone", shell.manifold),

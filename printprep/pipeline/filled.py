@@ -1,4 +1,4 @@
-"""What every fill returns: a part whose inside is decided, and how it came about."""
+"""What every fill returns: a part whose inside is decided, and what it was computed from."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 class Filled:
     """A part whose inside is decided.
 
-    profile : with the settings that the part needs;  depths, program : it was solved with.
-    stability : how the part stands;  volume_mm3 : of the material that prints.
+    profile : the profile with the settings that the part needs.
+    depths, program : what it was solved with.
+    stability : how the part stands;  volume_mm3 : volume of the material that prints.
     supports, drainage, infill : None where the fill has none.
-    findings : what only the fill knows.
+    findings : those that only the fill can make.
     """
 
     profile: Profile

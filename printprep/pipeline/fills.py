@@ -1,7 +1,7 @@
-"""What may fill a part: one door for every fill.
+"""The fills: what the inside of a part is made of.
 
-To add one, put a row into ``FILLS``; command line, Python interface and batch find it there.  The
-rows import what they need when they run.
+To add one, put a row into ``FILLS``; the command line, the Python interface and a batch find it
+there.  The rows import what they need when they run.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 class Fill:
     """One way to fill a part.
 
-    summary : one line for --help;  solid : it prints as its mesh says, so a simulation of the mesh
-        is one of the print.
-    check : raises UsageError where profile or options do not go with it, before the long work.
-    check_output : raises UsageError for a suffix or a slicer whose file cannot carry it.
+    summary : one line for --help.
+    solid : whether the part prints as its mesh says, so that the mesh can be simulated.
+    check : raises UsageError, before the long work, if profile or options do not go with the fill.
+    check_output : raises UsageError for a suffix or a slicer whose file cannot carry the fill.
     run : decides the inside.
-    estimate_mm3 : material it would take, without a slicer; None where the profile does not allow
-        it.
+    estimate_mm3 : volume of material, estimated without a slicer; None where the profile does not
+        allow the fill.
     """
 
     name: str
@@ -50,7 +50,7 @@ def _check_cavity(profile: Profile, options: FillOptions) -> None:
     supports_wanted(options.self_support, profile)
     if options.slicer is not None:
         raise UsageError(
-            "--slicer goes with --fill infill: the slicer weighs a print with infill.",
+            "--slicer has no effect without --fill infill: it weighs prints with infill.",
             "Add --fill infill, or leave out --slicer.",
         )
 
@@ -110,7 +110,7 @@ FILLS: dict[str, Fill] = {
     for row in (
         Fill(
             name="cavity",
-            summary="hollow",
+            summary="air",
             solid=True,
             check=_check_cavity,
             check_output=_any_output,
@@ -132,7 +132,7 @@ FILLS: dict[str, Fill] = {
 
 
 def fill_of(name: str) -> Fill:
-    """The fill of that name.  Raises UsageError, with the names there are."""
+    """The fill with that name.  Raises UsageError, which lists the names."""
     found = FILLS.get(name)
     if found is None:
         raise UsageError(f"There is no fill {name}.", f"The fills are {', '.join(FILLS)}.")

@@ -1,4 +1,4 @@
-"""The method, from a model to a part: prepare, fill, advise, check."""
+"""The method from a model to a part: prepare, fill, advise, check."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def hollow_with(
     options: FillOptions,
     progress: Progress = SILENT,
 ) -> HollowResult:
-    """Hollow a model as frozen options say: the method, step by step.
+    """Hollow a model with frozen options: the method, step by step.
 
     Raises
     ------
@@ -49,10 +49,10 @@ def hollow_with(
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
-        found = run_rules(context, filled.profile)
+        rule_findings = run_rules(context, filled.profile)
     with clock.stage("alternative"):
         alternative = alternative_fill(options.fill, prepared, filled, lean)
-    findings = sorted_findings([*found, *filled.findings])
+    findings = sorted_findings([*rule_findings, *filled.findings])
     return result_of(prepared, filled, context, findings, alternative, clock.seconds)
 
 
@@ -80,30 +80,32 @@ def hollow(
     slicer: Path | None = None,
     progress: Progress = SILENT,
 ) -> HollowResult:
-    """Hollow a model: the lightest part that stands at the lean asked for.
+    """Hollow a model: the lightest part that stands at the requested lean.
 
     Parameters
     ----------
     model : a file (STL, OBJ, PLY, GLB, 3MF; NPZ, NPY, PT for voxels) or a trimesh.Trimesh.
-    profile : name or path of a profile, or one already loaded;  overrides : dotted keys on top.
-    units : of the file: mm, cm, m, in;  up : the file's axis that points up.
+    profile : name or path of a profile, or one already loaded.
+    overrides : profile keys to change, a key in a table as "table.key".
+    units : unit of the file: mm, cm, m, in;  up : axis of the file that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
-    pose : K, to lay the model, as placed so far, into its K-th steadiest stable pose.
-    resolution : voxels along the longest side for the optimization.
-    lean : degrees at which the part must stand, or "15@90" for 15° toward the azimuth of 90°;
-        None takes the profile's.
+    pose : K puts the placed model into its K-th steadiest stable pose.
+    resolution : voxels along the longest side, for the optimization.
+    lean : degrees at which the part must stand, or "15@90" for 15° toward azimuth 90°; None takes
+        the profile's.
     objective : a name in :data:`printprep.objectives.OBJECTIVES`: "lean", the linear program, or
         "paper", DensiCrafter's objective.
-    solver : of the paper's objective: "plane", exact, or "adam", as the paper descends, on a torch
-        ``device`` ("cpu", "cuda").
-    base : whether material may be added around the feet: "auto", "never", "always".
-    self_support : carry the cavities' ceilings by vaults; None: where the process needs it.
-    drains : holes in each cavity, at least, 0 for none;  drain_diameter_mm : how wide; None takes
-        the profile's.
+    solver : how the paper's objective is solved: "plane", exactly, or "adam", by gradient descent
+        as in the paper, on a torch ``device`` ("cpu", "cuda").
+    base : whether material may be added around the feet: "auto" (where that saves material),
+        "never", "always".
+    self_support : whether vaults carry the ceilings of cavities; None: if the process needs them.
+    drains : least number of drain holes in each cavity, 0 for none;  drain_diameter_mm : their
+        diameter.  None takes the profile's.
     fill : a name in :data:`printprep.pipeline.fills.FILLS`: "cavity", or "infill", the profile's
-        sparse infill with dense ballast where weight is needed (filament).
-    slicer : the PrusaSlicer that weighs an infill print; None takes one that is found, and where
-        none is, the print is estimated.
+        sparse infill with dense ballast where weight is needed (filament only).
+    slicer : the PrusaSlicer that weighs an infill print.  None uses the one installed; without one
+        the print is estimated.
 
     Raises
     ------
@@ -127,14 +129,14 @@ def hollow(
 
 
 def check_options(profile: Profile, options: FillOptions) -> None:
-    """Raise UsageError for options that exclude each other, or that the profile rules out."""
+    """Raise UsageError for options that exclude each other, or that the profile excludes."""
     check_resolution(options.resolution)
     check_solver(objective_of(options.objective), options.solver)
     fill_of(options.fill).check(profile, options)
 
 
 def advise(prepared: Prepared, filled: Filled, lean: Lean, progress: Progress) -> Advice | None:
-    """What would make a lean reachable that is out of reach; None where it is reached."""
+    """What would make a lean feasible that is out of reach; None where it is feasible."""
     from printprep.stand.poses import stable_poses
     from printprep.types import Advice
 
@@ -148,7 +150,7 @@ def advise(prepared: Prepared, filled: Filled, lean: Lean, progress: Progress) -
 def context_of(
     prepared: Prepared, filled: Filled, lean: Lean, advice: Advice | None
 ) -> CheckContext:
-    """What the rules look at."""
+    """The part as the rules look at it."""
     from printprep.check import CheckContext
 
     part = filled.part
@@ -175,7 +177,7 @@ def result_of(
     alternative: AlternativeFill | None,
     seconds: Mapping[Stage, float],
 ) -> HollowResult:
-    """All that was found out, in one value."""
+    """Everything that ``hollow`` returns, as one value."""
     from printprep.result import HollowResult
     from printprep.stand.stability import stability
 

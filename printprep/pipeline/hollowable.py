@@ -1,4 +1,4 @@
-"""The hollowable volume: all that may be cavity, deeper than the wall, its vaults taken out."""
+"""The hollowable volume: all that may be cavity, deeper than the wall and without the vaults."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 class Hollowable:
     """All that may be cavity.
 
-    manifold : the volume, vaults taken out;  depths : below the model's surface, on the grid.
-    supports : the vaults, None without any;  profile : with the settings that follow from them.
+    manifold : the volume without the vaults;  depths : below the model's surface, on the grid.
+    supports : the vaults, None if there are none.
+    profile : the profile with the settings that follow from the vaults.
     """
 
     manifold: Manifold
@@ -43,7 +44,7 @@ class Hollowable:
 
 
 def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> Hollowable:
-    """Everything deeper than the wall, with vaults under its ceilings where they are wanted."""
+    """Everything deeper than the wall, with vaults under its ceilings if they are requested."""
     from printprep.grid.depth import measure_depths
 
     solid, profile = prepared.solid, prepared.profile
@@ -65,9 +66,9 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
 
 
 def _without_plate_only(profile: Profile, supports: Supports) -> Profile:
-    """The profile without the key that keeps a slicer's supports out of cavities, once none go.
+    """The profile without the key that keeps a slicer's supports out of cavities, if none go there.
 
-    The key costs the outside its supports where they would rest on the model.
+    The key also removes outside supports that would rest on the model.
     """
     if supports.unsupported_mm2 > 0 or supports.islands:
         return profile

@@ -27,8 +27,8 @@ def fill_with_infill(
 ) -> Filled:
     """The lightest print with sparse infill that stands at the lean.
 
-    A slicer weighs the prints where there is one; otherwise they are estimated, and a finding
-    says so.
+    If there is a slicer, it weighs the prints; otherwise they are estimated, and a finding tells
+    so.
     """
     solid, profile = prepared.solid, prepared.profile
     assert profile.infill is not None  # see :func:`printprep.infill.options.check_infill`
@@ -37,25 +37,25 @@ def fill_with_infill(
     with clock.stage("voxelize"):
         depths = measured_depths(solid, profile, options.resolution)
         program = infill_program(solid, depths, profile)
-    found: Ballasted | None = None
+    ballasted: Ballasted | None = None
     trial_slicer = None if slicer is None else TrialSlicer(slicer, profile)
     if trial_slicer is not None:
         with clock.stage("slice"):
-            found = weighed_ballast(solid, program, options.base, lean, sparse, trial_slicer)
-    weighed_with = trial_slicer if found is not None else None
-    if found is None:
+            ballasted = weighed_ballast(solid, program, options.base, lean, sparse, trial_slicer)
+    weighed_with = trial_slicer if ballasted is not None else None
+    if ballasted is None:
         with clock.stage("solve"):
             choice = program.choose(options.base, lean)
-            found = estimated_ballast(solid, program, choice, sparse)
+            ballasted = estimated_ballast(solid, program, choice, sparse)
     grams_per_mm3 = profile.material.density_g_cm3 / 1000
     infill = Infill(
         pattern=profile.infill.pattern,
         density=profile.infill.density,
         perimeters=lines(profile),
         layers=layers(profile),
-        ballast=found.ballast,
-        ballast_g=found.ballast_mm3 * grams_per_mm3,
-        moments=found.moments,
+        ballast=ballasted.ballast,
+        ballast_g=ballasted.ballast_mm3 * grams_per_mm3,
+        moments=ballasted.moments,
         slicer=None if weighed_with is None else weighed_with.slicer.name,
         slices=0 if trial_slicer is None else trial_slicer.slices,
     )
@@ -64,10 +64,10 @@ def fill_with_infill(
         profile=profile,
         depths=depths,
         program=program,
-        density=found.density,
-        part=found.part,
-        stability=found.stability,
-        volume_mm3=float(found.moments[0]),
+        density=ballasted.density,
+        part=ballasted.part,
+        stability=ballasted.stability,
+        volume_mm3=float(ballasted.moments[0]),
         infill=infill,
         findings=() if weighed_with is not None else (estimated,),
     )
@@ -75,11 +75,11 @@ def fill_with_infill(
 
 def _only_estimated(has_slicer: bool) -> Finding:
     if has_slicer:
-        why, fix = "A body of it does not touch the bed", "Give it a base (--base auto)."
+        why, fix = "A body does not touch the bed", "Give it a base (--base auto)."
     else:
         why, fix = "No slicer was found", INSTALL_HINT
     return finding(
         "infill-estimated",
-        f"{why}: mass and tilt angle are estimates, not measured in its G-code.",
+        f"{why}: mass and tilt angle are estimated, not measured in the G-code.",
         fix,
     )

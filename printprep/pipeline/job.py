@@ -1,7 +1,7 @@
-"""One run of one model, as the command, a batch or a service runs it: data in, data out.
+"""One run of one model, for the command, a batch or a service: data in, data out.
 
-``run_job`` reads, hollows, simulates, verifies and writes; what is found decides, by ``fail_on``,
-whether anything is written.
+``run_job`` reads, hollows, simulates, verifies and writes.  It writes nothing if a finding reaches
+the level ``fail_on``.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    """What is asked of one model.
+    """One model and what to do with it.
 
-    profile : name or path of a profile, or one already loaded;  overrides : dotted keys on top.
-    output : where the part goes;  written_for : the slicer it is written for.
-    plugs : where plugs for its drains go, None for none.
-    simulate : let the part go in a physics engine;  verify : slice it and measure the G-code.
-    fail_on : write nothing with a finding at least as severe; None writes always.
+    profile : name or path of a profile, or one already loaded.
+    overrides : profile keys to change, a key in a table as "table.key".
+    output : the file for the part;  written_for : the slicer it is written for.
+    plugs : the file for plugs of its drain holes, None for no plugs.
+    simulate : simulate the part in a physics engine;  verify : slice it and measure the G-code.
+    fail_on : write nothing if a finding is at least this severe; None writes always.
     """
 
     model: Path
@@ -49,11 +50,11 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class JobResult:
-    """What came of a job.
+    """The result of a job.
 
     result : the part, as its file holds it;  findings : those of the part and of its print.
-    verified : the print, None where it was not sliced.
-    written, plugs : the files written, None where none was.
+    verified : the print, None if it was not sliced.
+    written, plugs : the files that were written, None if none was.
     """
 
     result: HollowResult
@@ -64,7 +65,7 @@ class JobResult:
 
     @property
     def stopped(self) -> bool:
-        """Whether a finding kept the part from being written."""
+        """Whether a finding reached ``fail_on``, so that the part was not written."""
         return self.written is None
 
 
@@ -74,7 +75,7 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     Raises
     ------
     UsageError, InputError, GeometryError, OutputError, ToolError : see :mod:`printprep.errors`.
-        Nothing is written then.
+        Then nothing is written.
     """
     from printprep.check import at_or_above, sorted_findings
     from printprep.output.limits import format_findings
@@ -83,15 +84,15 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
 
     profile = check_job(job)
     result = hollow_with(job.model, profile, job.placement, job.options, progress)
-    more = [*format_findings(result.profile, job.output, job.written_for)]
+    file_findings = [*format_findings(result.profile, job.output, job.written_for)]
     if job.plugs is not None:
-        more += _plug_findings(result.drainage, job.plugs)
-    result = replace(result, findings=sorted_findings([*result.findings, *more]))
+        file_findings += _plug_findings(result.drainage, job.plugs)
+    result = replace(result, findings=sorted_findings([*result.findings, *file_findings]))
     if job.simulate:
         with progress.stage("simulate"):
             result = _simulated(result)
     verified = verify_result(result, progress=progress) if job.verify else None
-    # The print is one slicer's: its findings are told, but do not change the part's own file
+    # A print depends on the slicer: its findings are reported, but not written into the part.
     print_findings = () if verified is None else verified.findings
     findings = sorted_findings([*result.findings, *print_findings])
     if job.fail_on is not None and at_or_above(findings, job.fail_on):
@@ -102,9 +103,9 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
 
 
 def check_job(job: Job) -> Profile:
-    """Find out before the long work whether a job can be done; returns its profile.
+    """Check before the long work that a job can be done; return its profile.
 
-    Raises UsageError, OutputError or ToolError, as ``run_job`` would after it.
+    Raises UsageError, OutputError or ToolError, as ``run_job`` would later.
     """
     from printprep.output.limits import check_output
     from printprep.output.manual_settings import check_slicer
@@ -115,7 +116,8 @@ def check_job(job: Job) -> Profile:
     check_output(job.output)
     if job.output.exists() and job.model.exists() and job.output.samefile(job.model):
         raise UsageError(
-            f"{job.output} is the model itself and would be replaced.", "Name another --output."
+            f"{job.output} is the model, which would be replaced.",
+            "Name another file with --output.",
         )
     profile = load_profile(job.profile, job.overrides)
     check_slicer(profile, job.written_for)
@@ -124,8 +126,8 @@ def check_job(job: Job) -> Profile:
     fill.check_output(job.output.suffix, job.written_for)
     if job.simulate and not fill.solid:
         raise UsageError(
-            "The simulation takes the mesh for solid, which a print with infill is not.",
-            "Leave out --simulate; --verify measures the tilt angle in the G-code.",
+            "A print with infill cannot be simulated: the simulation takes the mesh for solid.",
+            "Leave out --simulate, or use --verify, which measures the tilt angle in the G-code.",
         )
     check_options(profile, job.options)
     if job.verify:
@@ -137,33 +139,33 @@ def _check_drains(job: Job, profile: Profile) -> None:
     from printprep.output.limits import check_output
 
     if not profile.drain.count and (job.plugs is not None or "drain.diameter_mm" in job.overrides):
-        what = "--plugs has nothing to plug" if job.plugs is not None else "No hole is that wide"
+        what = "--plugs has" if job.plugs is not None else "A drain diameter has"
         raise UsageError(
-            f"{what}: profile {profile.name} makes no drains.",
-            "Ask for drains with --drains N, or take a profile for resin or powder.",
+            f"{what} no effect: profile {profile.name} makes no drain holes.",
+            "Request drain holes with --drains N, or choose a profile for resin or powder.",
         )
     if job.plugs is None:
         return
     if job.plugs.suffix.lower() != ".3mf":
         raise UsageError(
-            f"{job.plugs}: plugs are written as .3mf.", "Name a file that ends in .3mf."
+            f"{job.plugs}: --plugs writes only .3mf.", "Name a file that ends in .3mf."
         )
     check_output(job.plugs)
-    for other, what in ((job.output, "the part"), (job.model, "the model")):
-        if job.plugs.resolve() == other.resolve():
+    for file, noun in ((job.output, "part"), (job.model, "model")):
+        if job.plugs.resolve() == file.resolve():
             raise UsageError(
-                f"{job.plugs} is {what} itself and would be replaced.",
-                "Name another file for --plugs.",
+                f"{job.plugs} is the {noun}, which would be replaced.",
+                "Name another file with --plugs.",
             )
 
 
-def _plug_findings(found: Drainage | None, plugs: Path) -> tuple[Finding, ...]:
-    """That there is nothing to plug, so that no file is looked for."""
+def _plug_findings(drainage: Drainage | None, plugs: Path) -> tuple[Finding, ...]:
+    """That the file of plugs is not written, if there is nothing to plug."""
     from printprep.check.catalogue import finding
 
-    if found is not None and found.drains:
+    if drainage is not None and drainage.drains:
         return ()
-    return (finding("no-plugs", f"{plugs} was not written: the part has no drains."),)
+    return (finding("no-plugs", f"{plugs} was not written: the part has no drain holes."),)
 
 
 def _simulated(result: HollowResult) -> HollowResult:
@@ -171,13 +173,13 @@ def _simulated(result: HollowResult) -> HollowResult:
     from printprep.check.simulated import disagreements
     from printprep.stand.trial import trial
 
-    found = trial(result.part.manifold, result.profile.printer.first_layer_mm, result.lean)
-    findings = sorted_findings([*result.findings, *disagreements(found)])
-    return replace(result, simulation=found, findings=findings)
+    simulation = trial(result.part.manifold, result.profile.printer.first_layer_mm, result.lean)
+    findings = sorted_findings([*result.findings, *disagreements(simulation)])
+    return replace(result, simulation=simulation, findings=findings)
 
 
 def _write(job: Job, result: HollowResult) -> Path | None:
-    """Write the part and its plugs; returns where the plugs are, None where there are none."""
+    """Write the part and its plugs; return the file of the plugs, None if there are none."""
     from printprep.output.plugs import write_plugs
 
     result.write(job.output, job.written_for)

@@ -1,4 +1,4 @@
-"""What a run is asked for, as frozen values: a command, a batch or a service can pass them on."""
+"""The options of a run as frozen values, which a command, a batch or a service can pass on."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ FINEST, COARSEST = 512, 8  # voxels along the longest side
 
 @dataclass(frozen=True)
 class Placement:
-    """How a model lies on the bed.
+    """How a model is placed on the bed.
 
-    units : of the file, mm, cm, m or in; None takes what the file says, else mm.
-    up : the file's axis that points up.
+    units : unit of the file: mm, cm, m or in; None takes the one named in the file, or mm.
+    up : axis of the file that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
-    pose : K lays the model, as placed so far, into its K-th steadiest stable pose.
+    pose : K puts the placed model into its K-th steadiest stable pose.
     """
 
     units: str | None = None
@@ -44,14 +44,14 @@ class FillOptions:
     """How the inside is decided.
 
     fill : a name in :data:`printprep.pipeline.fills.FILLS`.
-    lean : degrees the part must stand, "15@90" for 15° toward the azimuth of 90°, None for the
+    lean : degrees at which the part must stand, "15@90" for 15° toward azimuth 90°, None for the
         profile's.
     resolution : voxels along the longest side.
-    objective : a name in :data:`printprep.objectives.OBJECTIVES`, with its solver.
+    objective, solver : a name in :data:`printprep.objectives.OBJECTIVES`, and how it is solved.
     base : whether material may be added around the feet.
-    self_support : whether vaults carry ceilings; None: where the process lets them sag.
-    slicer : the PrusaSlicer that weighs infill prints; None takes one that is found, and without
-        one the print is estimated.
+    self_support : whether vaults carry ceilings; None: if ceilings sag in the profile's process.
+    slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
+        the print is estimated.
     """
 
     fill: str = "cavity"
@@ -75,5 +75,5 @@ def check_resolution(resolution: int) -> None:
     if not COARSEST <= resolution <= FINEST:
         raise UsageError(
             f"A resolution of {resolution} is not between {COARSEST} and {FINEST} voxels.",
-            "The default is 64; walls are exact at any.",
+            "The default, 64, suits most models; walls are exact at any resolution.",
         )

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A model that is ready: its triangles as they came, placed, and the solid they make."""
+    """A model that is ready: its own triangles, placed, and the solid made from them."""
 
     model: Model
     solid: Solid
@@ -32,7 +32,7 @@ def prepare(
     placement: Placement,
     progress: Progress,
 ) -> Prepared:
-    """Read a model (a mesh file, a voxel file or a mesh), place it, and make a solid of it.
+    """Read a model (a mesh file, a voxel file or a mesh), place it, and make it into a solid.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def prepare(
 def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_IN_FILE) -> Model:
     """A file or mesh as triangles on the bed, not yet posed.
 
-    Raises UsageError for a placement that has no meaning, InputError for an unreadable file.
+    Raises UsageError for an invalid placement, InputError for an unreadable file.
     """
     from printprep.generators.model import read_model
     from printprep.generators.read import SUFFIXES as VOXEL_SUFFIXES
@@ -75,7 +75,7 @@ def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_
 
 
 def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
-    """Model and solid in the stable pose of this number, the steadiest being 1."""
+    """Model and solid in the stable pose with this number; 1 is the steadiest."""
     from printprep.stand.poses import in_pose, stable_poses
 
     poses = stable_poses(solid.manifold)
@@ -83,7 +83,7 @@ def _posed(placed: Model, solid: Solid, number: int) -> tuple[Model, Solid]:
         known = ", ".join(f"{k} ({p.tilt_deg:.0f}°)" for k, p in enumerate(poses, start=1))
         raise UsageError(
             f"{solid.name} has no stable pose {number}.",
-            f"It has these, with the lean each stands: {known}." if poses else None,
+            f"Its stable poses, with their tilt angles, are {known}." if poses else None,
         )
     manifold, move = in_pose(solid.manifold, poses[number - 1])
     placement = move @ solid.placement

@@ -1,4 +1,4 @@
-"""Simulate a file: read it, make a solid of it, let it go on the bed, tilt the bed."""
+"""Simulate a file: read it, make it into a solid, let it stand freely, tilt the bed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
-    """A file, how it stands as computed and as simulated, and what follows from it."""
+    """A simulated file: how it stands as computed and as simulated, and the findings."""
 
     solid: Solid
     stability: Stability
@@ -39,7 +39,7 @@ def simulate(
     """Simulate a file, placed as ``hollow`` places it but otherwise as it came.
 
     Parameters are those of :func:`printprep.hollow`; of the profile only the first layer and the
-    lean matter.
+    lean count.
 
     Raises
     ------
@@ -54,11 +54,39 @@ def simulate(
     from printprep.stand.trial import trial
 
     settings = load_profile(profile, overrides or {})
-    asked = lean_of(lean, settings.stability.lean_deg)
+    requested = lean_of(lean, settings.stability.lean_deg)
     solid = prepare(model, settings, placement, progress).solid
     first_layer_mm = settings.printer.first_layer_mm
     with progress.stage("simulate"):
-        stands = stability(solid.manifold, first_layer_mm)
-        simulation = trial(solid.manifold, first_layer_mm, asked)
-    findings = sorted_findings(simulation_findings(simulation, asked))
-    return Simulated(solid, stands, simulation, asked, settings, findings)
+        part_stability = stability(solid.manifold, first_layer_mm)
+        simulation = trial(solid.manifold, first_layer_mm, requested)
+    findings = sorted_findings(simulation_findings(simulation, requested))
+    return Simulated(solid, part_stability, simulation, requested, settings, findings)
+
+
+def draw_fall(
+    simulated: Simulated,
+    *,
+    gif: Path | None = None,
+    strip: Path | None = None,
+    progress: Progress = SILENT,
+) -> None:
+    """Draw the bed tilting toward the weakest edge: a GIF, a strip of PNG stills, or both.
+
+    Raises OutputError if a file cannot be written.
+    """
+    if gif is None and strip is None:
+        return
+    from printprep.files import write_atomically
+    from printprep.render import animation
+    from printprep.stand.fall import film
+
+    part = simulated.solid.manifold
+    first_layer_mm = simulated.profile.printer.first_layer_mm
+    with progress.stage("draw"):
+        if gif is not None:
+            moving = film(part, first_layer_mm, animation.GIF_FRAMES_PER_S)
+            write_atomically(gif, animation.gif_bytes(moving))
+        if strip is not None:
+            stills = film(part, first_layer_mm, animation.STRIP_FRAMES_PER_S)
+            write_atomically(strip, animation.strip_bytes(stills))

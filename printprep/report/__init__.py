@@ -1,1 +1,1 @@
-"""What printprep says of a part: JSON, terminal, page, thumbnail."""
+"""Results as text for a terminal, as JSON and as charts: layout only, no geometry."""

@@ -37,7 +37,7 @@ def exploration_json(found: Exploration, *, model: str) -> dict[str, Any]:
 
 
 def show_exploration(console: Console, found: Exploration) -> None:
-    """A row for every lean, then what to compare with."""
+    """Print a row for every lean, then the parts to compare with."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
@@ -50,11 +50,11 @@ def show_exploration(console: Console, found: Exploration) -> None:
     console.print(table)
     if not found.points:
         console.print(
-            f"No filling makes it stand: at best it tips at {found.reachable_deg:.1f}°.\n"
+            f"No filling makes the part stand: the best one tips at {found.reachable_deg:.1f}°.\n"
         )
     for mark in found.marks:
-        tilt = "does not touch the bed" if mark.tilt_deg is None else f"{mark.tilt_deg:.1f}°"
-        console.print(f"{mark.name}: {mark.mass_g:.1f} g, tips at {tilt}")
+        tips = "no contact" if mark.tilt_deg is None else f"tips at {mark.tilt_deg:.1f}°"
+        console.print(f"{mark.name}: {mark.mass_g:.1f} g, {tips}")
 
 
 def _base(point: Point) -> str:

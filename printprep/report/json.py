@@ -1,4 +1,4 @@
-"""What was found out, as JSON for programs: numbers in the units their keys name, never NaN."""
+"""Results as JSON for programs: numbers in the units that their keys name, never NaN."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def result_json(
     model: str | None = None,
     output: str | None = None,
 ) -> dict[str, Any]:
-    """All that ``hollow`` found out: the figures that the file carries, and those of the run.
+    """The result of ``hollow``: the figures that the file carries, and those of the run.
 
-    findings : the part's and its print's; None for the part's alone.
-    model : the file as the user named it, None for its stem;  output : where the part was
-    written, None when it was not.
+    findings : those of the part and of its print; None for those of the part alone.
+    model : the file as the user named it, None for its stem.
+    output : the file that was written, None if none was.
     """
     figures = result.figures().to_json()
     return {
@@ -41,7 +41,7 @@ def result_json(
 
 
 def check_json(found: Checked, *, model: str) -> dict[str, Any]:
-    """What ``check`` found out about a file."""
+    """The result of ``check``."""
     context, profile = found.context, found.profile
     volume_mm3 = float(context.part.volume())
     wall = context.wall
@@ -63,7 +63,7 @@ def check_json(found: Checked, *, model: str) -> dict[str, Any]:
 
 
 def simulate_json(found: Simulated, *, model: str) -> dict[str, Any]:
-    """What ``simulate`` found out about a file."""
+    """The result of ``simulate``."""
     return {
         "printprep": __version__,
         "model": model,
@@ -78,7 +78,7 @@ def simulate_json(found: Simulated, *, model: str) -> dict[str, Any]:
 
 
 def findings_json(findings: Sequence[Finding]) -> list[dict[str, Any]]:
-    """Findings with all their fields, null where they have none."""
+    """Findings with all their fields; an empty field is null."""
     return [plain(rounded_finding(item)) for item in findings]
 
 

@@ -14,21 +14,21 @@ if TYPE_CHECKING:
 
 
 def simulated(simulation: Simulation) -> str:
-    """One line: whether it stays where it was put, and when it tips."""
+    """One line: whether the part stands freely, and the lean at which it tips."""
     settled = simulation.settled
     if not settled.stands:
-        return f"falls: turned by {settled.rotation_deg:.1f}° after {settled.seconds:g} s"
+        return f"falls over: turned by {settled.rotation_deg:.1f}° after {settled.seconds:g} s"
     first = first_to_tip(simulation)
-    stays = f"stands for {settled.seconds:g} s (turned by {settled.rotation_deg:.1f}°)"
+    stands = f"stands for {settled.seconds:g} s (turned by {settled.rotation_deg:.1f}°)"
     if first is None:
-        return stays
-    return f"{stays}; tips at {angle(first.tips_deg)} toward azimuth {first.azimuth_deg:.0f}°"
+        return stands
+    return f"{stands}; tips at {angle(first.tips_deg)} toward azimuth {first.azimuth_deg:.0f}°"
 
 
 def azimuth_table(simulation: Simulation) -> Table:
-    """Simulated beside computed, a line for each azimuth."""
+    """Computed and simulated angles, a row for each azimuth."""
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    for head in ("leaning toward", "computed", "foot leaves the bed", "goes over"):
+    for head in ("leaning toward", "computed", "foot leaves the bed", "falls over"):
         table.add_column(head, justify="right", no_wrap=True)
     for item in simulation.tippings:
         table.add_row(
@@ -41,5 +41,5 @@ def azimuth_table(simulation: Simulation) -> Table:
 
 
 def angle(lean_deg: float | None) -> str:
-    """A lean, or that there was none up to the largest tried."""
+    """A lean in degrees; None is one beyond the largest that is tried."""
     return f"over {MOST_LEAN_DEG:g}°" if lean_deg is None else f"{lean_deg:.1f}°"

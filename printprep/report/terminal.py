@@ -1,4 +1,4 @@
-"""What was found out, for a person at a terminal: short, readable without colour, 80 columns."""
+"""Results for a person at a terminal: short, readable without colour, 80 columns."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rich.text import Text
 
 from printprep.report.simulation import azimuth_table, simulated
 from printprep.stand.lean import tilt_toward
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -22,10 +23,12 @@ if TYPE_CHECKING:
     from printprep.types import AlternativeFill, Drainage, Finding, Infill, Repair
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
-# Rules whose information the table has already given.
-_TOLD = frozenset({"sealed-cavity"})
-# And those of the model as it is, which hollowing changes nothing about: `check` tells them.
-_OWN = _TOLD | {"coarse-facets", "gap", "overhang-area", "trapped-volume", "wall-thickness"}
+# Rules whose information is in the table already.
+_IN_TABLE = frozenset({"sealed-cavity"})
+# Rules about the model itself, which hollowing does not change: `check` prints their information.
+_OF_THE_MODEL = frozenset(
+    {"coarse-facets", "gap", "overhang-area", "trapped-volume", "wall-thickness"}
+)
 
 
 def show_result(
@@ -36,7 +39,7 @@ def show_result(
     output: str | None,
     verbose: bool,
 ) -> None:
-    """The summary of ``hollow``: what changed, what was found, and where the file is, if it is."""
+    """Print the summary of ``hollow``: what changed, the findings, and where the file is."""
     facts = _facts_table()
     facts.add_row(
         "mass",
@@ -45,32 +48,32 @@ def show_result(
     )
     facts.add_row(
         "tips at",
-        f"{_lean(result.tilt_solid_deg)} → {_lean(result.tilt_deg)} (should stand {result.lean})",
+        f"{_tilt(result.tilt_solid_deg)} → {_tilt(result.tilt_deg)}; should stand at {result.lean}",
     )
     if result.wall_min_mm is not None:
         facts.add_row(
             "thinnest wall",
-            f"{result.wall_min_mm:.2f} mm (profile {result.profile.wall_mm:g} mm)",
+            f"{result.wall_min_mm:.2f} mm (profile: {result.profile.wall_mm:g} mm)",
         )
     if result.simulation is not None:
         facts.add_row("simulated", simulated(result.simulation))
     if result.infill is None:
         facts.add_row("cavities", _cavities(result.part.cavities))
     else:
-        facts.add_row("inside", _infill(result.infill))
-        facts.add_row("weighed", _weighed(result.infill))
+        facts.add_row("infill", _infill(result.infill))
+        facts.add_row("figures", _figures_from(result.infill))
     if result.supports is not None:
-        facts.add_row("held inside by", _supports(result))
+        facts.add_row("vaults", _vaults(result))
     if result.drainage is not None and result.part.cavities:
-        facts.add_row("drains", _drains(result.drainage))
+        facts.add_row("drain holes", _drains(result.drainage))
     facts.add_row("base", _base(result))
     if result.alternative_fill is not None:
-        facts.add_row(*_other_way(result.alternative_fill))
+        facts.add_row(*_alternative(result.alternative_fill))
     proof = _proof(result)
     if proof is not None:
         facts.add_row("proof", proof)
     if verbose and result.density.aim_deg is not None:
-        facts.add_row("solved for", f"{result.density.aim_deg:.2f}°, margin included")
+        facts.add_row("solved for", f"{result.density.aim_deg:.2f}°, including the margin")
     _add_repair(facts, result.solid.repair)
     if verbose:
         total = sum(result.seconds.values())
@@ -78,7 +81,7 @@ def show_result(
         facts.add_row("seconds", f"{total:.2f} ({stages})")
     console.print(facts)
     shown = result.findings if findings is None else findings
-    show_findings(console, shown, told=_TOLD if verbose else _OWN)
+    show_findings(console, shown, hidden=_IN_TABLE if verbose else _IN_TABLE | _OF_THE_MODEL)
     console.print()
     if output is None:
         console.print("Not written: a finding reached the --fail-on level.")
@@ -89,16 +92,16 @@ def show_result(
 
 
 def show_check(console: Console, found: Checked, *, verbose: bool) -> None:
-    """The summary of ``check``."""
+    """Print the summary of ``check``."""
     context, profile = found.context, found.profile
     facts = _facts_table()
     facts.add_row("size", " × ".join(f"{side:.4g}" for side in context.size_mm) + " mm")
     facts.add_row("mass", f"{_mass(found.mass_g)} in {profile.material.name}")
-    tilt = _lean(tilt_toward(context.stability, context.lean))
-    facts.add_row("tips at", f"{tilt} (should stand {context.lean})")
+    tilt = _tilt(tilt_toward(context.stability, context.lean))
+    facts.add_row("tips at", f"{tilt}; should stand at {context.lean}")
     if context.wall is not None:
         facts.add_row(
-            "thinnest wall", f"{context.wall.value_mm:.2f} mm (profile {profile.wall_mm:g} mm)"
+            "thinnest wall", f"{context.wall.value_mm:.2f} mm (profile: {profile.wall_mm:g} mm)"
         )
     facts.add_row("cavities", _cavities(context.cavities))
     if verbose:
@@ -112,11 +115,11 @@ def show_check(console: Console, found: Checked, *, verbose: bool) -> None:
 
 
 def show_simulation(console: Console, found: Simulated, *, verbose: bool) -> None:
-    """The summary of ``simulate``."""
+    """Print the summary of ``simulate``."""
     facts = _facts_table()
     facts.add_row(
         "tips at",
-        f"{_lean(tilt_toward(found.stability, found.lean))} (should stand {found.lean})",
+        f"{_tilt(tilt_toward(found.stability, found.lean))}; should stand at {found.lean}",
     )
     facts.add_row("simulated", simulated(found.simulation))
     if verbose:
@@ -130,7 +133,7 @@ def show_simulation(console: Console, found: Simulated, *, verbose: bool) -> Non
 
 
 def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:
-    """One line a profile, the default first."""
+    """Print a row for each profile, the default first."""
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
     for head in ("name", "process", "material", "wall", "layer", "bed, mm"):
         table.add_column(head, no_wrap=True)
@@ -145,75 +148,72 @@ def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:
             bed,
         )
     console.print(table)
-    console.print("\nprintprep profiles show NAME tells where each figure comes from.")
+    console.print("\n`printprep profiles show NAME` shows the source of each figure.")
 
 
 def show_findings(
-    console: Console, findings: Sequence[Finding], *, told: frozenset[str] = _TOLD
+    console: Console, findings: Sequence[Finding], *, hidden: frozenset[str] = _IN_TABLE
 ) -> None:
-    """Each finding with its way out, but for information of rules that has been ``told``."""
-    left = [item for item in findings if item.severity != "info" or item.rule not in told]
-    if not left:
+    """Print each finding with its fix, except information of the rules in ``hidden``."""
+    shown = [item for item in findings if item.severity != "info" or item.rule not in hidden]
+    if not shown:
         return
     table = Table.grid(padding=(0, 2, 0, 0))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for item in left:
-        words = Text(item.message)
+    for item in shown:
+        text = Text(item.message)
         if item.fix:
-            words.append(f"\n→ {item.fix}", style="dim")
-        words.append(f"  [{item.rule}]", style="dim")
-        table.add_row(Text(item.severity, style=_STYLE[item.severity]), words)
+            text.append(f"\n→ {item.fix}", style="dim")
+        text.append(f"  [{item.rule}]", style="dim")
+        table.add_row(Text(item.severity, style=_STYLE[item.severity]), text)
     console.print()
     console.print(table)
 
 
-def _supports(result: HollowResult) -> str:
-    found = result.supports
-    if found is None or not found.capitals:
-        return "nothing: its ceilings print as they are"
-    words = f"vaults on {found.columns} columns, {_mass(result.supports_mass_g)}"
-    if found.unsupported_mm2 or found.islands:
-        words += f"; {found.unsupported_mm2:.1f} mm² still unsupported"
-    return words
+def _vaults(result: HollowResult) -> str:
+    vaults = result.supports
+    if vaults is None or not vaults.capitals:
+        return "none needed: the ceilings print without support"
+    text = f"on {vaults.columns} columns, {_mass(result.supports_mass_g)}"
+    if vaults.unsupported_mm2 or vaults.islands:
+        text += f"; {vaults.unsupported_mm2:.1f} mm² of ceiling still unsupported"
+    return text
 
 
-def _drains(found: Drainage) -> str:
-    """As "5 of 3.5 mm (4 outlets, 1 vent), 0.16 cm³ of floors filled"."""
-    if not found.drains:
+def _drains(drainage: Drainage) -> str:
+    """For example "5 of 3.5 mm (4 outlets, 1 vent), 0.16 cm³ of floors filled"."""
+    if not drainage.drains:
         return "none"
-    outlets = sum(drain.role == "outlet" for drain in found.drains)
-    vents = len(found.drains) - outlets
-    roles = f"{_counted(outlets, 'outlet')}, {_counted(vents, 'vent')}"
-    words = f"{len(found.drains)} of {found.drains[0].diameter_mm:g} mm ({roles})"
-    if found.filled_mm3 >= 1:
-        words += f", {_plain(found.filled_mm3 / 1000)} cm³ of floors filled"
-    return words
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+    outlets = sum(drain.role == "outlet" for drain in drainage.drains)
+    vents = len(drainage.drains) - outlets
+    roles = f"{counted(outlets, 'outlet')}, {counted(vents, 'vent')}"
+    text = f"{len(drainage.drains)} of {drainage.drains[0].diameter_mm:g} mm ({roles})"
+    if drainage.filled_mm3 >= 1:
+        text += f", {_plain(drainage.filled_mm3 / 1000)} cm³ of floors filled"
+    return text
 
 
 def _infill(infill: Infill) -> str:
     walls = f"{infill.density:.0%} {infill.pattern}, {infill.perimeters} perimeters"
     if not infill.ballast:
         return f"{walls}; no ballast needed"
-    return f"{walls}; ballast, printed dense, adds {_mass(infill.ballast_g)}"
+    return f"{walls}; dense ballast adds {_mass(infill.ballast_g)}"
 
 
-def _other_way(other: AlternativeFill) -> tuple[str, str]:
-    about = f"about {float(f'{other.mass_g:.2g}'):g} g"
-    if other.fill == "infill":
+def _alternative(fill: AlternativeFill) -> tuple[str, str]:
+    """Label and text; the mass is an estimate."""
+    about = f"about {float(f'{fill.mass_g:.2g}'):g} g"
+    if fill.fill == "infill":
         return "with infill", f"{about} (--fill infill)"
-    return "hollow", f"{about}, supports inside not counted (--fill cavity)"
+    return "with cavity", f"{about} without its vaults (--fill cavity)"
 
 
-def _weighed(infill: Infill) -> str:
+def _figures_from(infill: Infill) -> str:
     if infill.slicer is None:
-        return "estimated"
+        return "estimated without a slicer"
     times = "once" if infill.slices == 1 else f"{infill.slices} times"
-    return f"in the G-code of {infill.slicer}, sliced {times}"
+    return f"measured in the G-code of {infill.slicer}, sliced {times}"
 
 
 def _facts_table() -> Table:
@@ -223,10 +223,10 @@ def _facts_table() -> Table:
     return table
 
 
-def _lean(tilt_deg: float | None) -> str:
+def _tilt(tilt_deg: float | None) -> str:
     if tilt_deg is None:
         return "no contact"
-    return f"{tilt_deg:.1f}°" if tilt_deg >= 0 else f"{tilt_deg:.1f}° (falls by itself)"
+    return f"{tilt_deg:.1f}°" if tilt_deg >= 0 else f"{tilt_deg:.1f}° (falls over by itself)"
 
 
 def _mass(mass_g: float) -> str:
@@ -236,12 +236,12 @@ def _mass(mass_g: float) -> str:
 
 
 def _plain(value: float) -> str:
-    """Three figures or more, never an exponent for what a printer can make."""
+    """At least three significant digits, without an exponent for what a printer can make."""
     return f"{value:.0f}" if value >= 1000 else f"{value:.3g}" if value < 100 else f"{value:.1f}"
 
 
 def _proof(result: HollowResult) -> str | None:
-    """What the certificate says, where there was something to choose."""
+    """What the certificate proves; None where there was nothing to choose."""
     certificate, aim_deg = result.density.certificate, result.density.aim_deg
     reachable = result.density.reachable_deg
     if certificate is None or aim_deg is None:
@@ -252,7 +252,7 @@ def _proof(result: HollowResult) -> str | None:
         return None
     gap = max(certificate.gap, 0.0)
     least = _mass(certificate.bound_g)
-    return f"no filling of its voxels below {least} stands at {aim_deg:.1f}° (gap {gap:.1g})"
+    return f"no filling of its voxels under {least} stands at {aim_deg:.1f}° (gap {gap:.1g})"
 
 
 def _cavities(cavities: Sequence[Manifold]) -> str:
@@ -267,20 +267,20 @@ def _base(result: HollowResult) -> str:
     if base is None:
         return "none"
     grown = f", footprint grown by {base.growth_mm:.2g} mm" if base.growth_mm else ""
-    return f"feet seated {base.seat_mm:.2g} mm{grown}, {_mass(result.base_mass_g)}"
+    return f"seat {base.seat_mm:.2g} mm high{grown}, {_mass(result.base_mass_g)}"
 
 
 def _add_repair(facts: Table, repair: Repair) -> None:
     if repair.rung == "as-is":
         return
-    done = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
+    actions = "; ".join(action.rstrip(".") for action in repair.actions) or repair.rung
     moved_mm = round(repair.moved_max_mm, 4)
-    moved = f"surface moved by up to {moved_mm:.2g} mm" if moved_mm else "nothing moved"
-    facts.add_row("repair", f"{done}; {moved}")
+    moved = f"surface moved by up to {moved_mm:.2g} mm" if moved_mm else "surface not moved"
+    facts.add_row("repair", f"{actions}; {moved}")
 
 
 def _advice(result: HollowResult, output: str) -> list[str]:
-    """How to print it: what the file cannot say itself."""
+    """How to print it: the settings that the file cannot carry."""
     profile = result.profile
     if not profile.traits.has_nozzle:
         return []
@@ -293,7 +293,7 @@ def _advice(result: HollowResult, output: str) -> list[str]:
     plate_only = "support_material_buildplate_only" in profile.slicer.object_settings
     if plate_only and result.part.cavities and output.lower().endswith(".3mf"):
         advice.append(
-            "Supports, if you switch them on, start from the build plate only, or they would fill "
-            "the cavity: supports outside that would rest on the model are lost."
+            "If you switch on supports, they start from the build plate only, so that they do not "
+            "fill the cavity. Supports outside that would rest on the model are left out too."
         )
     return advice

@@ -1,8 +1,7 @@
-"""What ``verify`` found out, as JSON and for a person."""
+"""The result of ``verify``, as JSON and for a person at a terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from printprep.output.numbers import number
@@ -17,21 +16,24 @@ if TYPE_CHECKING:
 
 
 def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
-    """All that was found out; computed and printed figures side by side."""
-    carried, printed = found.part, found.printed
+    """The result of ``verify``: computed and printed figures side by side.
+
+    part : the file as the user named it, None if it was not written.
+    """
+    computed, printed = found.part, found.printed
     return {
         "printprep": __version__,
         "part": part,
         "slicer": found.slicer,
-        "profile": carried.profile.name,
-        "lean_deg": number(carried.lean.angle_deg),
-        "lean_azimuth_deg": number(carried.lean.azimuth_deg),
+        "profile": computed.profile.name,
+        "lean_deg": number(computed.lean.angle_deg),
+        "lean_azimuth_deg": number(computed.lean.azimuth_deg),
         "computed": {
-            "mass_g": number(carried.mass_g),
-            "centre_of_mass_mm": [number(value) for value in carried.centre_mm],
-            "tilt_deg": number(carried.tilt_deg),
-            "contact_area_mm2": number(carried.contact_area_mm2),
-            "bodies": len(carried.bodies),
+            "mass_g": number(computed.mass_g),
+            "centre_of_mass_mm": [number(value) for value in computed.centre_mm],
+            "tilt_deg": number(computed.tilt_deg),
+            "contact_area_mm2": number(computed.contact_area_mm2),
+            "bodies": len(computed.bodies),
         },
         "printed": printed_json(printed) | {"tilt_deg": number(found.tilt_deg)},
         "mass_off": number(found.mass_off, 3),
@@ -42,12 +44,12 @@ def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
         else number(found.supported.support_in_cavities_mm3),
         "baselines": [
             {
-                "name": other.name,
-                "mass_g": number(other.mass_g),
-                "seconds": number(other.seconds),
-                "tilt_deg": number(other.tilt_deg),
+                "name": baseline.name,
+                "mass_g": number(baseline.mass_g),
+                "seconds": number(baseline.seconds),
+                "tilt_deg": number(baseline.tilt_deg),
             }
-            for other in found.baselines
+            for baseline in found.baselines
         ],
         "slicer_warnings": list(found.warnings),
         "findings": findings_json(found.findings),
@@ -55,7 +57,7 @@ def verify_json(found: Verified, *, part: str | None) -> dict[str, Any]:
 
 
 def printed_json(printed: Printed) -> dict[str, Any]:
-    """A print's own figures."""
+    """The figures of a print."""
     return {
         "mass_g": number(printed.mass_g),
         "volume_mm3": number(printed.volume_mm3),
@@ -79,51 +81,50 @@ def printed_json(printed: Printed) -> dict[str, Any]:
 
 
 def show_verified(console: Console, found: Verified, *, with_findings: bool = True) -> None:
-    """The summary: computed against printed, then the usual ways to print, then the findings."""
+    """Print the summary: printed against computed, then the usual infills, then the findings."""
     from rich.table import Table
 
     from printprep.report.terminal import show_findings
 
-    carried, printed = found.part, found.printed
-    console.print(f"Sliced with {found.slicer}, profile {carried.profile.name}")
+    computed, printed = found.part, found.printed
+    console.print(f"Sliced with {found.slicer}, profile {computed.profile.name}")
     facts = Table.grid(padding=(0, 2, 0, 0))
     facts.add_column(style="dim", no_wrap=True)
     facts.add_column(overflow="fold")
     off = 100 * found.mass_off
     facts.add_row(
-        "mass", f"{printed.mass_g:.2f} g printed, {carried.mass_g:.2f} g computed ({off:+.1f} %)"
+        "mass", f"{printed.mass_g:.2f} g printed, {computed.mass_g:.2f} g computed ({off:+.1f} %)"
     )
-    facts.add_row("centre of mass", f"{found.centre_off_mm:.2f} mm apart")
-    tilt = found.tilt_deg
-    computed = "no contact" if carried.tilt_deg is None else f"{carried.tilt_deg:.1f}°"
+    facts.add_row("centre of mass", f"printed {found.centre_off_mm:.2f} mm from the one computed")
+    tilt = "no contact" if computed.tilt_deg is None else f"{computed.tilt_deg:.1f}°"
     facts.add_row(
-        "tips at", f"{tilt:.1f}° printed, {computed} computed (should stand {carried.lean})"
+        "tips at",
+        f"{found.tilt_deg:.1f}° printed, {tilt} computed; should stand at {computed.lean}",
     )
     facts.add_row(
         "contact",
-        f"{printed.contact_area_mm2:.0f} mm² printed, {carried.contact_area_mm2:.0f} mm² computed",
+        f"{printed.contact_area_mm2:.0f} mm² printed, {computed.contact_area_mm2:.0f} mm² computed",
     )
-    if carried.cavities:
-        facts.add_row("in cavities", _nothing([printed.in_cavities_mm3]))
+    if computed.cavities:
+        facts.add_row("in cavities", _volume(printed.in_cavities_mm3))
     if found.supported is not None:
-        facts.add_row("support inside", _nothing([found.supported.support_in_cavities_mm3]))
+        facts.add_row("support inside", _volume(found.supported.support_in_cavities_mm3))
     facts.add_row("time", _hours(printed.slicer_summary.seconds))
-    for other in found.baselines:
-        facts.add_row(
-            other.name,
-            f"{other.mass_g:.2f} g, {_hours(other.seconds)}, "
-            + (f"tips at {other.tilt_deg:.1f}°" if other.tilt_deg >= 0 else "falls by itself"),
-        )
+    for baseline in found.baselines:
+        if baseline.tilt_deg >= 0:
+            tips = f"tips at {baseline.tilt_deg:.1f}°"
+        else:
+            tips = "falls over by itself"
+        facts.add_row(baseline.name, f"{baseline.mass_g:.2f} g, {_hours(baseline.seconds)}, {tips}")
     console.print(facts)
     if with_findings and found.findings:
         show_findings(console, found.findings)
     for warning in found.warnings:
-        console.print(f"The slicer says: {warning}")
+        console.print(f"The slicer warns: {warning}")
 
 
-def _nothing(volumes_mm3: Iterable[float]) -> str:
-    total = sum(volumes_mm3)
-    return f"{total / 1000:.2g} cm³" if total > 0 else "nothing"
+def _volume(volume_mm3: float) -> str:
+    return f"{volume_mm3 / 1000:.2g} cm³" if volume_mm3 > 0 else "nothing"
 
 
 def _hours(seconds: float | None) -> str:

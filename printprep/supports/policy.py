@@ -1,4 +1,4 @@
-"""The hollowable volume with its ceilings carried by vaults, where the process needs that."""
+"""Whether vaults carry the ceilings of cavities, and the hollowable volume with vaults."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from printprep.types import Supports
 
 
-def supports_wanted(asked: bool | None, profile: Profile) -> bool:
-    """Whether vaults carry the ceilings; None asks for them where the process lets ceilings sag.
+def supports_wanted(requested: bool | None, profile: Profile) -> bool:
+    """Whether vaults carry the ceilings; None stands for "if ceilings sag in the process".
 
-    Raises UsageError where vaults are asked for and ceilings of that process need none.
+    Raises UsageError if vaults are requested and ceilings of the process need none.
     """
-    if asked and not profile.traits.ceilings_sag:
+    if requested and not profile.traits.ceilings_sag:
         raise UsageError(
-            f"Ceilings need no vaults in {profile.process} (profile {profile.name}).",
-            "Leave --self-support out, or choose a profile for filament.",
+            f"Profile {profile.name} is for {profile.process}, where ceilings need no vaults.",
+            "Leave out --self-support, or choose a profile for filament.",
         )
-    return profile.traits.ceilings_sag if asked is None else asked
+    return profile.traits.ceilings_sag if requested is None else requested
 
 
 def supported(hollowable_volume: Manifold, profile: Profile) -> tuple[Manifold, Supports]:
-    """The hollowable volume with its ceilings carried by vaults, and what the vaults are."""
+    """The hollowable volume without its vaults, and figures of the vaults."""
     from printprep.supports import vaulted
     from printprep.types import Supports
 

@@ -1,1 +1,1 @@
-"""A part against the print of it: sliced, measured in its G-code, compared."""
+"""Compares a part with its print: slices it, measures the G-code, reports differences."""

@@ -1,7 +1,7 @@
-"""What the model takes when it is printed the usual ways, with walls as thick as the part's.
+"""The model printed with usual infills, and with walls as thick as the part's.
 
-With the least lines and layers that are no thinner than the profile's wall: solid but for 15 %
-gyroid, and with lightning infill, which only holds up ceilings.
+The walls have the least number of lines and layers that are no thinner than the profile's wall.
+The infills are 15 % gyroid, and lightning, which only holds up ceilings.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from printprep.errors import UsageError
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.arrays import Float
     from printprep.slicer.process import Slicer
     from printprep.verify.part_3mf import ComputedPart
 
@@ -25,12 +26,12 @@ _BASELINES = (
     ("15 % gyroid", {"fill_density": "15%", "fill_pattern": "gyroid"}),
     ("lightning infill", {"fill_density": "15%", "fill_pattern": "lightning"}),
 )
-_SLACK_MM = 1.0  # between the model's size and the part's, beyond the base
+_SLACK_MM = 1.0  # by which the sizes of model and part may differ, besides the base
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """A usual way to print: its mass, its tilt angle, and its seconds by the slicer's estimate."""
+    """The model with a usual infill.  seconds : the slicer's estimate of the printing time."""
 
     name: str
     mass_g: float
@@ -39,19 +40,19 @@ class Baseline:
 
 
 def model_of(part: ComputedPart, model: Path) -> Manifold:
-    """The model the part was made of, as a solid where the part is.
+    """The model that the part was made from, as a solid in the part's place.
 
-    Raises UsageError where it is another model, else what reading and repairing it raise.
+    Raises UsageError if it is another model, and whatever reading and repairing it raise.
     """
     from printprep.mesh.read import read_mesh
     from printprep.mesh.repair import repair
     from printprep.types import Model
 
     raw = read_mesh(model)
-    # Mesh readers may have turned and scaled the file's numbers; the placement starts from those
+    # A mesh reader may have turned and scaled the file's numbers; the placement starts from those.
     from_raw = part.placement @ np.linalg.inv(raw.from_file)
     vertices = raw.vertices @ from_raw[:3, :3].T + from_raw[:3, 3]
-    _refuse_another(part, model, vertices.max(axis=0) - vertices.min(axis=0))
+    _refuse_another_model(part, model, vertices.max(axis=0) - vertices.min(axis=0))
     return repair(Model(vertices, raw.faces, from_raw, raw.name)).manifold
 
 
@@ -63,9 +64,9 @@ def slice_baselines(
     load: Path | None,
     folder: Path,
 ) -> tuple[Baseline, ...]:
-    """Slice the model as it is, placed as the part is, once for each usual way.
+    """Slice the model in the part's place, once with each usual infill.
 
-    Raises ToolError where the slicer fails.
+    Raises ToolError if the slicer fails.
     """
     from printprep.gcode.measure import measure_gcode
     from printprep.gcode.stability import tilt_as_printed
@@ -74,7 +75,7 @@ def slice_baselines(
 
     stl = folder / "model.stl"
     stl.write_bytes(to_bytes(model, ".stl"))
-    gcode = folder / "other.gcode"
+    gcode = folder / "baseline.gcode"
     baselines = []
     for name, infill in _BASELINES:
         program.slice(stl, gcode, {**settings, **wall_keys(part.profile), **infill}, load)
@@ -84,14 +85,16 @@ def slice_baselines(
     return tuple(baselines)
 
 
-def _refuse_another(part: ComputedPart, model: Path, size_mm: np.ndarray) -> None:
+def _refuse_another_model(part: ComputedPart, model: Path, size_mm: Float) -> None:
+    """Raise UsageError if a model of this size, (3,) mm, cannot be the part's model."""
     growth_mm = 2 * part.profile.stability.base_growth_max_mm
-    base_mm = np.array([growth_mm, growth_mm, 0.0])  # grows the footprint only
-    room = part.size_mm - size_mm
-    if (room < -_SLACK_MM).any() or (room > base_mm + _SLACK_MM).any():
+    base_mm = np.array([growth_mm, growth_mm, 0.0])  # a base grows only the footprint
+    larger_mm = part.size_mm - size_mm
+    if (larger_mm < -_SLACK_MM).any() or (larger_mm > base_mm + _SLACK_MM).any():
         sizes = " × ".join(f"{side:.1f}" for side in size_mm)
+        part_sizes = " × ".join(f"{side:.1f}" for side in part.size_mm)
         raise UsageError(
-            f"{model.name} is not the model that {part.file.name} was made of: placed alike it is "
-            f"{sizes} mm.",
-            "Name that model's file, unchanged.",
+            f"{model.name} is not the model that {part.file.name} was made from: in its place it "
+            f"measures {sizes} mm, the part {part_sizes} mm.",
+            "Name the file of that model, unchanged.",
         )

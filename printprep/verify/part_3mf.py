@@ -1,4 +1,4 @@
-"""A part that printprep wrote, read from its 3MF: its mesh and the figures it carries."""
+"""Reads a part that printprep wrote as a 3MF: its mesh and the figures in the file."""
 
 from __future__ import annotations
 
@@ -20,20 +20,23 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
 
 
-_HOLLOW_IT = "Make it with `printprep hollow MODEL -o PART.3mf`."
+_HOLLOW_IT = "Make the part with `printprep hollow MODEL -o PART.3mf`."
 
 
 @dataclass(frozen=True, eq=False)
 class ComputedPart:
-    """What was computed of a part, in the coordinates of the bed.
+    """A part that printprep wrote, read back with its figures, in the coordinates of the bed.
 
-    mass_g, centre_mm, tilt_deg (None without contact; toward the lean's azimuth, if it has one),
-    lean, contact_polygon_mm ((k, 2), empty without contact), contact_area_mm2, profile : as
-    carried.
-    sure_polygon_mm : (k, 2) hull of the contact where it is at least a line wide: what is narrower
-    a slicer may leave out; empty where all of it is.
-    size_mm, middle_mm : (3,) of the bounding box;  placement : (4, 4) model's file → bed;
-    cavities : sealed voids of the mesh;  bodies : what of the mesh does not touch each other.
+    From the figures in the file:
+    mass_g, lean, profile, contact_area_mm2;  centre_mm : (3,) centre of mass;  tilt_deg : toward
+    the lean's azimuth if it has one, None without contact;  contact_polygon_mm : (k, 2), empty
+    without contact;  size_mm, middle_mm : (3,) of the bounding box;  placement : (4, 4), model's
+    file → bed.
+
+    From the mesh:
+    sure_polygon_mm : (k, 2) hull of the contact where it is at least a line wide, which a slicer
+    never leaves out; empty if no contact is that wide.
+    cavities : sealed voids;  bodies : those that do not touch each other.
     """
 
     file: Path
@@ -53,7 +56,7 @@ class ComputedPart:
 
 
 def computed_part(path: str | Path) -> ComputedPart:
-    """Read PART.3mf.  Raises InputError where printprep did not write it, or it is broken."""
+    """Read PART.3mf.  Raises InputError if printprep did not write it, or if it is broken."""
     from printprep.mesh.measure import bodies, shells, try_manifold
     from printprep.mesh.weld import weld
     from printprep.threemf.read import read_3mf
@@ -61,12 +64,12 @@ def computed_part(path: str | Path) -> ComputedPart:
     path = Path(path)
     if path.is_file() and path.suffix.lower() != ".3mf":
         raise InputError(f"{path.name} is not a 3MF, so it carries no figures.", _HOLLOW_IT)
-    found = read_3mf(path)
-    figures, profile = _figures(path, found.attachments)
-    manifold, status = try_manifold(*weld(found.vertices, found.faces))
+    content = read_3mf(path)
+    figures, profile = _figures(path, content.attachments)
+    manifold, status = try_manifold(*weld(content.vertices, content.faces))
     if manifold.is_empty():
         raise InputError(
-            f"{path.name}: its mesh is not the solid that was written ({status}).", _HOLLOW_IT
+            f"{path.name}: the mesh is not the solid that printprep wrote ({status}).", _HOLLOW_IT
         )
     low, high = np.array(figures.bounds_mm)
     shift = np.array([*manifold.bounding_box()[:3]]) - low
@@ -82,7 +85,7 @@ def computed_part(path: str | Path) -> ComputedPart:
         lean=Lean(figures.lean_deg, figures.lean_azimuth_deg),
         contact_polygon_mm=polygon_mm + shift[:2],
         contact_area_mm2=0.0 if contact is None else contact.area_mm2,
-        sure_polygon_mm=_sure(manifold, profile),
+        sure_polygon_mm=_sure_polygon(manifold, profile),
         bodies=bodies(manifold),
         size_mm=high - low,
         middle_mm=(low + high) / 2 + shift,
@@ -93,7 +96,7 @@ def computed_part(path: str | Path) -> ComputedPart:
 
 
 def _figures(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Profile]:
-    """The figures a 3MF carries, and the profile among them."""
+    """The figures in a 3MF, and their profile."""
     from printprep.output.figures import Figures
     from printprep.profiles import Profile
     from printprep.threemf.read import ATTACHMENT
@@ -106,13 +109,13 @@ def _figures(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Pro
     except ValueError as error:  # pydantic's errors are among them
         first = str(error).splitlines()[0]
         raise InputError(
-            f"{path.name}: this printprep cannot read its figures: {first}.", _HOLLOW_IT
+            f"{path.name}: this version of printprep cannot read its figures: {first}.", _HOLLOW_IT
         ) from error
     return figures, profile
 
 
-def _sure(manifold: Manifold, profile: Profile) -> Float:
-    """The hull of the first layer's section, opened by a line's width."""
+def _sure_polygon(manifold: Manifold, profile: Profile) -> Float:
+    """(k, 2) mm, the hull of the first layer's section after an opening by a line's width."""
     from manifold3d import JoinType
 
     from printprep.stand.contact import contact_of, section_at_bed

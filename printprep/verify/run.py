@@ -1,4 +1,4 @@
-"""Slice a part with the real slicer, and compare what it prints with what was computed."""
+"""Slice a part with a real slicer, and compare the print with what was computed."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.errors import InputError
+from printprep.files import reason_of
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -24,13 +25,14 @@ _SUPPORTS = {"support_material": "1", "support_material_auto": "1"}
 
 @dataclass(frozen=True, eq=False)
 class Verified:
-    """A part, the print of it, and where they differ.
+    """A part, its print, and their differences.
 
-    slicer : its name and version;  tilt_deg : of the print, toward the lean's azimuth;
-    mass_off : relative, centre_off_mm, contact_off_mm : how far the print is from the computed
-    figures;  printed : with the settings given;  supported : with supports
-    switched on too, None for a part without cavities;  others : what the model printed in other
-    ways comes to;  warnings : the slicer's own.
+    slicer : its name and version.
+    printed : the print;  tilt_deg : its tilt angle, toward the lean's azimuth if it has one.
+    mass_off : relative difference of the masses;  centre_off_mm : distance of the centres of mass;
+    contact_off_mm : distance of the support polygons, None if the part has no contact.
+    supported : the print with supports switched on, None for a part without cavities.
+    baselines : the model with usual infills;  warnings : those of the slicer.
     """
 
     part: ComputedPart
@@ -54,18 +56,18 @@ def verify(
     compare_with: Path | None = None,
     progress: Progress = SILENT,
 ) -> Verified:
-    """Slice a 3MF of ours and compare the G-code with the figures the 3MF carries.
+    """Slice a 3MF that printprep wrote, and compare the G-code with the figures in the 3MF.
 
     Parameters
     ----------
     slicer : the program; None looks for it.
     load : .ini or G-code whose settings are used instead of those of the part's profile.
-    compare_with : the model the part was made of, sliced in the same run as it would be printed
-        otherwise (:func:`printprep.verify.baselines.slice_baselines`).
+    compare_with : the model that the part was made from; it is sliced with usual infills
+        (:func:`printprep.verify.baselines.slice_baselines`).
 
     Raises
     ------
-    InputError : the 3MF is not ours;  UsageError : its profile is not for filament;
+    InputError : printprep did not write the 3MF;  UsageError : its profile is not for filament;
     ToolError : there is no slicer, or it failed.
     """
     from printprep.check.registry import sorted_findings
@@ -81,35 +83,35 @@ def verify(
     )
 
     with progress.stage("read-part"):
-        carried = computed_part(part)
-        model = None if compare_with is None else model_of(carried, compare_with)
-    settings = settings_for(carried, load)
+        computed = computed_part(part)
+        model = None if compare_with is None else model_of(computed, compare_with)
+    settings = settings_for(computed, load)
     program = find_slicer(slicer)
     findings: list[Finding] = []
     with tempfile.TemporaryDirectory(prefix="printprep-") as name:
         folder = Path(name)
         with progress.stage("slice"):
-            printed, warnings = slice_and_measure(program, carried, settings, load, folder)
-        findings += compare(carried, printed)
+            printed, warnings = slice_and_measure(program, computed, settings, load, folder)
+        findings += compare(computed, printed)
         supported = None
-        if carried.cavities:
+        if computed.cavities:
             with progress.stage("slice-supports"):
                 supported, _ = slice_and_measure(
-                    program, carried, {**settings, **_SUPPORTS}, load, folder
+                    program, computed, {**settings, **_SUPPORTS}, load, folder
                 )
             findings += support_inside(supported)
         baselines: tuple[Baseline, ...] = ()
         if model is not None:
             with progress.stage("slice-baselines"):
-                baselines = slice_baselines(program, carried, model, settings, load, folder)
+                baselines = slice_baselines(program, computed, model, settings, load, folder)
     return Verified(
-        part=carried,
+        part=computed,
         slicer=program.name,
         printed=printed,
-        tilt_deg=tilt_as_printed(printed, carried.lean),
-        mass_off=printed.mass_g / carried.mass_g - 1,
-        centre_off_mm=centre_offset_mm(carried, printed),
-        contact_off_mm=contact_offset_mm(carried, printed),
+        tilt_deg=tilt_as_printed(printed, computed.lean),
+        mass_off=printed.mass_g / computed.mass_g - 1,
+        centre_off_mm=centre_offset_mm(computed, printed),
+        contact_off_mm=contact_offset_mm(computed, printed),
         supported=supported,
         baselines=baselines,
         warnings=warnings,
@@ -118,17 +120,17 @@ def verify(
 
 
 def settings_for(part: ComputedPart, load: Path | None) -> dict[str, str]:
-    """What a part is sliced with: the profile's settings, or only what ``load`` leaves unsaid.
+    """The settings to slice a part with: the profile's, or only those that ``load`` lacks.
 
-    Raises InputError where ``load`` cannot be read, UsageError for a profile that is not fdm.
+    Raises InputError if ``load`` cannot be read, UsageError for a profile that is not for filament.
     """
     from printprep.slicer.prusa_ini import profile_settings
 
     own = profile_settings(part.profile)
     if load is None:
         return own
-    # PrusaSlicer's default is a density of 0: everything would weigh nothing
-    return {} if _says_density(load) else {"filament_density": own["filament_density"]}
+    # PrusaSlicer's default is a density of 0: everything would weigh nothing.
+    return {} if _has_density(load) else {"filament_density": own["filament_density"]}
 
 
 def slice_and_measure(
@@ -138,7 +140,7 @@ def slice_and_measure(
     load: Path | None,
     folder: Path,
 ) -> tuple[Printed, tuple[str, ...]]:
-    """The print of a part, and what the slicer warned of."""
+    """The print of a part, and the slicer's warnings."""
     from printprep.gcode.measure import measure_gcode
 
     gcode = folder / "part.gcode"
@@ -146,15 +148,15 @@ def slice_and_measure(
     return measure_gcode(gcode, cavities=part.cavities, bodies=part.bodies), sliced.warnings
 
 
-def _says_density(config: Path) -> bool:
+def _has_density(config: Path) -> bool:
     try:
         with config.open("rb") as lines:
-            return any(_density(line) for line in lines if b"filament_density" in line)
+            return any(_sets_density(line) for line in lines if b"filament_density" in line)
     except OSError as error:
-        raise InputError(f"{config}: cannot be read ({error.strerror})") from error
+        raise InputError(f"{config} cannot be read: {reason_of(error)}.") from error
 
 
-def _density(line: bytes) -> bool:
+def _sets_density(line: bytes) -> bool:
     found = re.match(rb"[;\s]*filament_density\s*=\s*([\d.,\s]+)", line)
     if found is None:
         return False

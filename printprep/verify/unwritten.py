@@ -1,4 +1,4 @@
-"""Verify a part before it is written: the file it would become, sliced from a temporary folder."""
+"""Verify a part before it is written: its file is sliced from a temporary folder."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ if TYPE_CHECKING:
 
 
 def check_verifiable(target: Path, profile: Profile) -> None:
-    """Find out before the long work whether a part can be verified.
+    """Check before the long work that a part can be verified.
 
-    Raises UsageError for a target that is no 3MF or a profile that is not for filament, ToolError
-    where there is no slicer.
+    Raises UsageError for a target that is not a 3MF or a profile that is not for filament,
+    ToolError if there is no slicer.
     """
     from printprep.slicer.process import find_slicer
     from printprep.slicer.prusa_ini import profile_settings
 
     if target.suffix.lower() != ".3mf":
         raise UsageError(
-            f"{target}: only a 3MF carries the settings and figures to verify.",
-            "Name an --output that ends with .3mf, or leave out --verify.",
+            f"{target} cannot be verified: only a 3MF carries the settings and figures.",
+            "Name an --output that ends in .3mf, or leave out --verify.",
         )
     profile_settings(profile)
     find_slicer()
 
 
 def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verified:
-    """Slice the 3MF that ``result`` would be written as, and compare.
+    """Slice the 3MF of ``result`` before it is written, and compare.
 
     Raises what :func:`printprep.verify.run.verify` raises.
     """

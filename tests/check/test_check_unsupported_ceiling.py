@@ -25,7 +25,7 @@ def test_roofs_on_both_sides_of_the_limit(fdm, deg, silent):
 def test_a_piece_that_hangs_in_a_cavity_is_reported_however_small(fdm):
     part = roofed(30) + box(0.6, 1.0, z=5.0)
     (finding,) = unsupported_ceiling(context(part), fdm)
-    assert "1 piece" in finding.message
+    assert "1 island" in finding.message
     assert finding.at_mm == pytest.approx((0, 0, 5), abs=0.2)
 
 

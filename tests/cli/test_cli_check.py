@@ -92,7 +92,7 @@ def test_summary_and_quiet(tmp_path, capsys):
     assert run(["check", path, "--lean", "50", "-q"]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert captured.err.startswith("printprep: error: It tips over at a lean of 45.0°")
+    assert captured.err.startswith("printprep: error: The part tips over at 45.0°")
     assert run(["check", path, "-v"]) == 0
     assert "triangles" in capsys.readouterr().out
 

@@ -93,7 +93,7 @@ def test_what_cannot_be_parsed_is_usage(capsys, line):
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("printprep: error: ")
-    assert "--help` lists" in captured.err
+    assert "--help` shows the usage" in captured.err
 
 
 def test_what_cannot_be_parsed_is_json_too(capsys):

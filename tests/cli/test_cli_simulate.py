@@ -48,7 +48,7 @@ def test_a_lean_asked_for_and_not_reached_fails(folder, capsys):
     assert run(["simulate", path, "--lean", "20"]) == 1
     out = capsys.readouterr().out
     assert "simulated-tip" in out
-    assert "should stand 20°" in out
+    assert "should stand at 20°" in out
 
 
 def test_a_lean_not_reached_that_may_be_is_an_error_line_alone(folder, capsys):
@@ -56,7 +56,7 @@ def test_a_lean_not_reached_that_may_be_is_an_error_line_alone(folder, capsys):
     assert run(["simulate", path, "--lean", "20", "--fail-on", "none", "-q"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert captured.err.startswith("printprep: error: In simulation its foot leaves the bed at")
+    assert captured.err.startswith("printprep: error: In simulation the part tips at")
 
 
 def test_a_model_is_placed_before_it_is_let_go(folder):
@@ -69,7 +69,7 @@ def test_what_falls_by_itself_fails_and_is_drawn(folder, tmp_path, capsys):
     gif, strip = tmp_path / "fall.gif", tmp_path / "fall.png"
     path = str(folder / "falling.stl")
     assert run(["simulate", path, "--gif", str(gif), "--strip", str(strip)]) == 1
-    assert "falls: turned by" in capsys.readouterr().out
+    assert "falls over: turned by" in capsys.readouterr().out
     assert gif.read_bytes()[:6] == b"GIF89a"
     assert strip.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 

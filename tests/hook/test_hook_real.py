@@ -34,7 +34,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def leaning(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A square prism sheared by 14 mm over 30: solid it tips at 3.8°, asked to stand 10°."""
+    """A square prism sheared by 14 mm over 30: the solid tips over at 3.8° and should stand 10°."""
     prism = trimesh.creation.box((16, 16, 30))
     points = np.array(prism.vertices) + np.array([0, 0, 15])
     points[:, 0] += points[:, 2] * 14 / 30
@@ -87,7 +87,7 @@ def test_strict_makes_the_slicer_report_a_failure(
 ):
     code, said, _ = slice_with_hook(prusa_slicer, leaning, config(tmp_path, "--strict"))
     assert code != 0
-    assert "tips at" in said and "printprep" in said
+    assert "tips over at" in said and "printprep" in said
     (tmp_path / "block").mkdir()
     block = write_model(tmp_path / "block")
     upright = config(tmp_path / "block", "--strict")

@@ -165,7 +165,7 @@ def test_a_setting_without_a_name_of_the_slicers_own_is_said_in_prusaslicers():
         },
     )
     (finding,) = format_findings(profile, Path("part.3mf"), "orca")
-    assert "fill_density=40% (in PrusaSlicer's words)" in finding.message
+    assert "fill_density=40% (PrusaSlicer's name)" in finding.message
     assert "Layer height 0.3 mm" in finding.message
     assert "Wall loops 3;" in finding.message
     assert "On build plate only" not in finding.message

@@ -91,4 +91,4 @@ def test_a_chart_of_another_kind_is_refused_before_the_work(
     with pytest.raises(SystemExit) as ended:
         main(["explore", str(prism), "--chart", str(tmp_path / "curve.gif")])
     assert ended.value.code == 2
-    assert "--chart writes .svg or .png" in capsys.readouterr().err
+    assert "--chart writes only .svg or .png" in capsys.readouterr().err

@@ -100,9 +100,13 @@ def test_a_simulation_is_part_of_the_result(job: Job):
         ({"options": FillOptions(fill="foam")}, UsageError, "foam"),
         ({"options": FillOptions(objective="best")}, UsageError, "best"),
         ({"options": FillOptions(resolution=4)}, UsageError, "resolution"),
-        ({"plugs": Path("p.3mf")}, UsageError, "nothing to plug"),
-        ({"overrides": {"drain.diameter_mm": 3.0}}, UsageError, "no drains"),
-        ({"simulate": True, "options": FillOptions(fill="infill")}, UsageError, "infill is not"),
+        ({"plugs": Path("p.3mf")}, UsageError, "--plugs has no effect"),
+        ({"overrides": {"drain.diameter_mm": 3.0}}, UsageError, "makes no drain holes"),
+        (
+            {"simulate": True, "options": FillOptions(fill="infill")},
+            UsageError,
+            "cannot be simulated",
+        ),
         ({"written_for": "orca", "options": FillOptions(fill="infill")}, UsageError, "orca"),
         ({"output": Path("o.stl"), "verify": True}, UsageError, "only a 3MF"),
         ({"options": FillOptions(slicer=Path("ps"))}, UsageError, "--slicer"),
@@ -122,7 +126,7 @@ def test_what_cannot_be_is_found_out_before_the_work(
 
 
 def test_the_model_is_never_replaced_by_its_part(job: Job):
-    with pytest.raises(UsageError, match="the model itself"):
+    with pytest.raises(UsageError, match="is the model, which would be replaced"):
         check_job(replace(job, output=job.model))
 
 

@@ -31,14 +31,14 @@ def test_it_names_what_changed_and_where_the_file_is():
     text = flat(summary(hollow_result()))
     for fact in (
         "9.92 g → 4.84 g (49 % of the solid)",
-        "45.0° → 45.0° (should stand 10°)",
-        "2.00 mm (profile 1.2 mm)",
+        "45.0° → 45.0°; should stand at 10°",
+        "2.00 mm (profile: 1.2 mm)",
         "cavities 1, 4.1 cm³",
-        "no filling of its voxels below 4.9 g stands at 10.5° (gap 2e-10)",
+        "no filling of its voxels under 4.9 g stands at 10.5° (gap 2e-10)",
         "base none",
         "Written: out.3mf",
         "first layer of 0.2 mm, a 0.4 mm nozzle and PLA",
-        "start from the build plate only",
+        "they start from the build plate only",
     ):
         assert fact in text
 
@@ -89,8 +89,8 @@ def test_base_and_falling_are_told():
     nothing = Stability(np.zeros((0, 2)), 0.0, (0, 0, 0), None, None, None)
     falling = replace(hollow_result().stability, tilt_deg=-3.0)
     text = flat(summary(hollow_result(with_base=True, stability_solid=nothing, stability=falling)))
-    assert "no contact → -3.0° (falls by itself)" in text
-    assert "feet seated 1 mm, footprint grown by 2 mm, 0.218 g" in text
+    assert "no contact → -3.0° (falls over by itself)" in text
+    assert "seat 1 mm high, footprint grown by 2 mm, 0.218 g" in text
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from closed_form_parts import context, hollow_box
 
-from printprep.check.drained import FILLED_MM3, drain_filled
+from printprep.check.drain_filled import FILLED_MM3, drain_filled
 from printprep.profiles import load_profile
 from printprep.types import Drainage
 
