@@ -9,7 +9,7 @@ import numpy as np
 
 from printprep.check.catalogue import finding
 from printprep.check.registry import rule
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import area_normals, arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _deviations(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
     from scipy.sparse.csgraph import connected_components
 
     corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(corners)
     doubled = np.linalg.norm(normals, axis=1)
     unit = normals / np.maximum(doubled, np.finfo(np.float64).tiny)[:, None]
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()

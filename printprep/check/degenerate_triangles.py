@@ -10,6 +10,7 @@ import numpy as np
 from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
+from printprep.mesh.measure import area_normals
 from printprep.types import Finding
 from printprep.wording import counted
 
@@ -32,9 +33,7 @@ def degenerate_triangles(context: CheckContext, profile: Profile) -> Iterator[Fi
         return
     corners = raw.vertices[raw.faces]
     sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
-    doubled = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
+    doubled = np.linalg.norm(area_normals(corners), axis=1)
     size = float(np.ptp(raw.vertices, axis=0).max())
     flat = np.flatnonzero(doubled <= _FLAT * size * sides.max(axis=1))
     if len(flat) < LEAST_SHARE * len(raw.faces) or len(flat) == 0:

@@ -11,7 +11,7 @@ import numpy as np
 from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import area_normals, arrays
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     vertices, faces = arrays(context.outside)
     corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(corners)
     doubled = np.linalg.norm(normals, axis=1)
     steep = math.sin(math.radians(profile.overhang_deg + _SLACK_DEG))
     hangs = -normals[:, 2] > steep * doubled
@@ -46,7 +46,7 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     largest = int(np.argmax(np.where(hangs, doubled, 0)))
     yield finding(
         "overhang-area",
-        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}° : a slicer "
+        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}°: a slicer "
         "adds supports there.",
         "Try another axis up (--up), or another pose (`printprep hollow --pose`).",
         value=area,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
 from printprep.errors import OutputError, UsageError
+from printprep.files import refuse_impossible_target
 
 if TYPE_CHECKING:
     from printprep.profiles import Profile
@@ -33,13 +34,7 @@ def check_output(path: Path) -> None:
 
 def check_writable(path: Path) -> None:
     """Raise OutputError if a file cannot be written: a folder is missing, or not writable."""
-    if path.is_dir():
-        raise OutputError(f"{path} is a folder, not a file.", "Name a file inside it.")
-    if not path.parent.is_dir():
-        raise OutputError(
-            f"{path} cannot be written: the folder {path.parent} does not exist.",
-            "Create the folder first, or name another one.",
-        )
+    refuse_impossible_target(path)
     if not os.access(path.parent, os.W_OK):
         raise OutputError(
             f"{path} cannot be written: the folder {path.parent} is not writable.",

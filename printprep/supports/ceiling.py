@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import area_normals, arrays
 from printprep.mesh.winding_columns import crossings_of
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def ceiling_samples(
     if len(faces) == 0:
         return np.zeros((0, 3))
     corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = area_normals(corners)
     steep = math.sin(math.radians(theta_deg)) * np.linalg.norm(normals, axis=1)
     flat = faces[normals[:, 2] > steep]
     if len(flat) == 0:
