@@ -1,6 +1,6 @@
 """Write docs/api.md, the Python interface, from signatures and docstrings.
 
-Run it from anywhere after a change to a public name:  python docs/make_api_reference.py
+Run it from anywhere after a change to a public name:  python3 dev.py docs
 """
 
 from __future__ import annotations
@@ -157,6 +157,6 @@ def reference() -> str:
 if __name__ == "__main__":
     if sys.argv[1:] == ["--check"]:
         if TARGET.read_text(encoding="utf-8") != reference():
-            sys.exit(f"{TARGET.name} is out of date: run python docs/make_api_reference.py")
+            sys.exit(f"{TARGET.name} does not match the docstrings: run python3 dev.py docs")
     else:
         TARGET.write_text(reference(), encoding="utf-8", newline="\n")

@@ -1,10 +1,12 @@
 """Write docs/cli.md from the program's own --help.
 
-Run it from anywhere after a change to an option:  python docs/make_cli_reference.py
+Run it from anywhere after a change to an option:  python3 dev.py docs
+With --check it writes nothing, and ends with 1 where the page is not what it would write.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -40,4 +42,7 @@ def reference() -> str:
 
 
 if __name__ == "__main__":
-    TARGET.write_text(reference(), encoding="utf-8", newline="\n")
+    if sys.argv[1:] != ["--check"]:
+        TARGET.write_text(reference(), encoding="utf-8", newline="\n")
+    elif TARGET.read_text(encoding="utf-8") != reference():
+        sys.exit(f"{TARGET.name} does not match --help; to write it anew: python3 dev.py docs")

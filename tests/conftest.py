@@ -11,7 +11,14 @@ import pytest
 from collection import CatalogueModel
 from hypothesis import settings
 
+pytest_plugins = ["tiers"]
+
+# The same examples every time: a change fails for what it changes. For more of them, and others
+# every time:  pytest --hypothesis-profile=random
 settings.register_profile("default", deadline=None, derandomize=True)
+settings.register_profile(
+    "random", deadline=None, derandomize=False, max_examples=500, print_blob=True
+)
 settings.load_profile("default")
 
 ROOT = Path(__file__).resolve().parent.parent

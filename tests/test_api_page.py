@@ -12,9 +12,7 @@ DOCS = Path(__file__).resolve().parent.parent / "docs"
 
 def test_the_page_is_up_to_date():
     made = runpy.run_path(str(DOCS / "make_api_reference.py"))["reference"]()
-    assert (DOCS / "api.md").read_text(encoding="utf-8") == made, (
-        "run: python docs/make_api_reference.py"
-    )
+    assert (DOCS / "api.md").read_text(encoding="utf-8") == made, "run: python3 dev.py docs"
 
 
 def test_it_has_every_public_name():

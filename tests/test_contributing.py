@@ -47,11 +47,11 @@ def last_value(code: str, names: dict[str, object]) -> object:
 
 @pytest.fixture
 def tower(tmp_path):
-    """A tower of 30 × 30 × 40 mm, as a file."""
+    """A tower of 18 × 18 × 40 mm, as a file."""
     from printprep.mesh.write import to_bytes
 
     path = tmp_path / "tower.stl"
-    path.write_bytes(to_bytes(box(30, 40), ".stl"))
+    path.write_bytes(to_bytes(box(18, 40), ".stl"))
     return path
 
 
@@ -96,7 +96,7 @@ def test_the_command(monkeypatch, tower, capsys):
     monkeypatch.setitem(sys.modules, "printprep.cli.weigh", module)
     monkeypatch.setitem(app.printprep._lazy, "weigh", "printprep.cli.weigh")
     assert run(["weigh", str(tower), "--scale", "2"]) == 0
-    assert capsys.readouterr().out == "288.000 cm³\n"
+    assert capsys.readouterr().out == "103.680 cm³\n"
 
 
 def test_every_door_has_an_example_and_every_example_a_test():

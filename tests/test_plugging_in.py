@@ -25,11 +25,11 @@ WAX = replace(PROCESSES["resin"], name="wax", cavity_holds="wax", peels_from_fil
 
 @pytest.fixture
 def tower(tmp_path):
-    """A tower of 30 × 30 × 40 mm, as a file."""
+    """A tower of 18 × 18 × 40 mm, as a file."""
     from printprep.mesh.write import to_bytes
 
     path = tmp_path / "tower.stl"
-    path.write_bytes(to_bytes(box(30, 40), ".stl"))
+    path.write_bytes(to_bytes(box(18, 40), ".stl"))
     return path
 
 

@@ -36,7 +36,7 @@ def rotation(up: str) -> Float:
     turn = _TURNS.get(axis if axis[:1] in ("+", "-") else f"+{axis}")
     if turn is None:
         raise UsageError(
-            f"--up {up!r} is not an axis.", "Use x, y or z, with + or − before it, for example +y."
+            f"--up {up!r} is not an axis.", "Use x, y or z, with an optional sign: +z, -y."
         )
     return np.array(turn, dtype=np.float64)
 

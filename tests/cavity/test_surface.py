@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import solids
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
@@ -62,7 +63,8 @@ def test_walls_are_measured_from_voids_the_model_already_has() -> None:
     assert len(part.cavities) == 1
 
 
-@settings(max_examples=12)
+@pytest.mark.slow
+@examples(12)
 @given(st.integers(0, 2**32 - 1))
 def test_random_unions_keep_wall_and_manifold(seed: int) -> None:
     rng = np.random.default_rng(seed)

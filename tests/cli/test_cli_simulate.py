@@ -49,13 +49,22 @@ def test_a_lean_asked_for_and_not_reached_fails(folder, capsys):
     out = capsys.readouterr().out
     assert "simulated-tip" in out
     assert "should stand at 20°" in out
+
+
+def test_a_lean_not_reached_that_may_be_is_an_error_line_alone(folder, capsys):
+    path = str(folder / "box.stl")
     assert run(["simulate", path, "--lean", "20", "--fail-on", "none", "-q"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("printprep: error: In simulation the part tips at")
+
+
+def test_a_model_is_placed_before_it_is_let_go(folder):
+    path = str(folder / "box.stl")
     assert run(["simulate", path, "--height", "20", "--up", "x", "--lean", "40"]) == 0
 
 
+@pytest.mark.slow
 def test_what_falls_by_itself_fails_and_is_drawn(folder, tmp_path, capsys):
     gif, strip = tmp_path / "fall.gif", tmp_path / "fall.png"
     path = str(folder / "falling.stl")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
@@ -50,7 +51,7 @@ def test_a_second_solver_agrees(seed: int) -> None:
     assert ours.bound == pytest.approx(theirs, rel=1e-7)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.integers(0, 2**32 - 1))
 def test_the_filling_is_what_the_certificate_says(seed: int) -> None:
     voxels, fixed, footing = random_problem(seed)
@@ -68,7 +69,7 @@ def test_the_filling_is_what_the_certificate_says(seed: int) -> None:
     assert fractional <= 4
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.integers(0, 2**32 - 1))
 def test_the_optimum_is_a_half_space_with_an_upward_normal(seed: int) -> None:
     voxels, fixed, footing = random_problem(seed)
@@ -86,7 +87,7 @@ def test_the_optimum_is_a_half_space_with_an_upward_normal(seed: int) -> None:
     assert np.all(found.rho[above < -1e-6] > 1 - 1e-6)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.integers(0, 2**32 - 1))
 def test_the_largest_lean_is_the_border_of_feasibility(seed: int) -> None:
     voxels, fixed, footing = random_problem(seed)

@@ -17,6 +17,9 @@ from printprep.output.part_file import part_bytes
 from printprep.output.plugs import plugs_3mf
 from printprep.pipeline.hollow import hollow
 
+# One worker drains the tower for all of them
+pytestmark = pytest.mark.xdist_group("drained tower")
+
 
 @pytest.fixture(scope="module")
 def tower() -> trimesh.Trimesh:
@@ -52,6 +55,8 @@ def plugs_of(result):
     return plugs_3mf(result.part, result.drainage, result.profile)
 
 
+@pytest.mark.slicer
+@pytest.mark.usefixtures("prusa_slicer")
 def test_the_layers_of_a_slicer_hold_nothing_shut(result):
     part = result.part
     undrained = quantized(Manifold.batch_boolean([part.outside, *part.cavities], OpType.Subtract))

@@ -37,7 +37,7 @@ def test_a_catalogue_without_sets_names_files_beside_it(tmp_path):
 @pytest.mark.parametrize(
     "text, options, error, says",
     [
-        ("file,up\na.obj,up\n", {}, UsageError, "names no axis"),
+        ("file,up\na.obj,up\n", {}, UsageError, "is not an axis"),
         ("name\na.obj\n", {}, InputError, "line 2 has no file"),
         ("file\n", {}, InputError, "holds no model"),
         ("set,file\ndev,a.obj\n", {"subset": "test"}, InputError, "of the set test"),

@@ -14,6 +14,8 @@ from printprep.evaluate.cases import data_set
 from printprep.evaluate.methods import ABLATIONS, MAIN, methods
 from printprep.evaluate.run import evaluate
 
+# One worker evaluates the two models for all of them
+pytestmark = pytest.mark.xdist_group("evaluated models")
 CUBE = ((0, 0, 0), (10, 10, 10))
 GALLOWS = (((0, 0, 0), (3, 4, 12)), ((0, 0, 9), (10, 4, 12)))
 QUICK = methods(["solid", "paper", "lean"], resolution=10)
@@ -110,6 +112,7 @@ def test_a_lean_of_no_concern_to_a_method_keeps_its_result(models, tmp_path):
     assert {row.lean_deg for row in found.results if row.method == "lean"} == {12.0}
 
 
+@pytest.mark.slow
 def test_workers_change_nothing(models, tmp_path, evaluated):
     told: list[tuple[str, int, int]] = []
     _, alone = evaluated

@@ -87,6 +87,7 @@ def test_the_interior_of_a_cube_weighs_what_the_inner_cube_does() -> None:
     np.testing.assert_allclose(np.array(moments) / volume, [0, 0, 20], atol=0.02)
 
 
+@pytest.mark.slow
 def test_the_interior_of_a_sphere_weighs_what_the_inner_ball_does() -> None:
     interior = build_interior(
         solids.solid(solids.sphere(20)), resolution=64, wall_mm=2.0, min_feature_mm=1.0

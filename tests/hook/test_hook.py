@@ -142,19 +142,28 @@ def test_a_hook_within_a_hook_does_nothing(gcode: Path, monkeypatch: pytest.Monk
     assert gcode.read_bytes() == before
 
 
-def test_what_reslicing_would_lose_is_refused(gcode: Path, tmp_path: Path, capsys):
-    settings = "; nozzle_diameter = 0.4\n; layer_height = 0.2\n"
-    tool = ";TYPE:Wipe tower\nG1 X10 Y10\nG1 X20 E1\n"
+SETTINGS = "; nozzle_diameter = 0.4\n; layer_height = 0.2\n"
+TOOL = ";TYPE:Wipe tower\nG1 X10 Y10\nG1 X20 E1\n"
+
+
+def refused(gcode: Path, text: str, capsys) -> str:
+    """What is said of G-code that is not resliced, and stays as it is."""
+    gcode.write_text(text)
+    assert run(["hook", "--reslice", "--model", "m.stl", str(gcode)]) in (3, 6)
+    assert gcode.read_text() == text
+    return capsys.readouterr().err
+
+
+def test_what_reslicing_would_lose_is_refused(gcode: Path, capsys):
+    assert "wipe tower" in refused(gcode, tower() + SETTINGS + TOOL, capsys)
     two = f"; printing object a\n{tower()}; printing object b\n"
-    for text, words in (
-        (tower() + settings + tool, "wipe tower"),
-        (two + settings, "2 objects"),
-        (tower(), "no PrusaSlicer settings"),
-    ):
-        gcode.write_text(text)
-        assert run(["hook", "--reslice", "--model", "m.stl", str(gcode)]) in (3, 6)
-        assert words in capsys.readouterr().err
-        assert gcode.read_text() == text
+    assert "2 objects" in refused(gcode, two + SETTINGS, capsys)
+
+
+@pytest.mark.slicer
+@pytest.mark.usefixtures("prusa_slicer")
+def test_gcode_without_settings_is_not_resliced(gcode: Path, capsys):
+    assert "no PrusaSlicer settings" in refused(gcode, tower(), capsys)
 
 
 def test_a_gcodes_settings_become_keys_of_a_profile():

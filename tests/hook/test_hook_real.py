@@ -27,7 +27,8 @@ from printprep.slicer.prusa_ini import profile_settings
 from printprep.slicer.sanitize import settings_ini
 from printprep.threemf.write import Item, Volume, write_3mf
 
-pytestmark = pytest.mark.slicer
+# One worker slices the block for all of them
+pytestmark = [pytest.mark.slicer, pytest.mark.xdist_group("hooked block")]
 ROOT = Path(__file__).resolve().parents[2]
 
 

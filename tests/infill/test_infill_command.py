@@ -47,12 +47,17 @@ def test_a_cavity_needs_no_slicer(model: Path, capsys: pytest.CaptureFixture[str
     assert "--fill infill" in capsys.readouterr().err
 
 
-def test_the_summary_names_the_other_way(model: Path, capsys: pytest.CaptureFixture[str]):
+@pytest.mark.parametrize(
+    ("process", "named"), [("", True), ("-p resin-standard --no-drains", False)]
+)
+def test_the_summary_names_the_other_way(
+    model: Path, capsys: pytest.CaptureFixture[str], process: str, named: bool
+):
     line = ["hollow", str(model), "--base", "never", "--resolution", "32", "--no-self-support"]
-    assert run(line) == 0
-    assert "g (--fill infill)" in capsys.readouterr().out
-    assert run([*line, "-p", "resin-standard", "--no-drains"]) == 0
-    assert "--fill" not in capsys.readouterr().out
+    assert run([*line, *process.split()]) == 0
+    out = capsys.readouterr().out
+    assert ("g (--fill infill)" in out) == named
+    assert ("--fill" in out) == named
 
 
 def test_infill_is_for_filament_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from infill_parts import FOOT, SHEAR, TALL, leaning, solid_of, upright
 from manifold3d import Manifold
@@ -58,7 +59,7 @@ def depths_of(manifold: Manifold) -> Depths:
     return measured_depths(solid_of(manifold), load_profile(), 40)
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(side=st.floats(12, 50), tall=st.floats(12, 50), level=st.floats(1.0, 1.3))
 def test_the_room_of_a_box_is_a_box_and_its_ceiling_the_top(side: float, tall: float, level: float):
     depths = depths_of(upright(side, tall))

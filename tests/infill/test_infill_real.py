@@ -24,7 +24,8 @@ from printprep.slicer.process import find_slicer
 from printprep.threemf.read import read_3mf
 from printprep.verify.run import Verified, verify
 
-pytestmark = pytest.mark.slicer
+# One worker makes the part for all of them
+pytestmark = [pytest.mark.slicer, pytest.mark.xdist_group("infill part")]
 LEAN = 14.0
 
 
@@ -130,7 +131,7 @@ def test_verify_agrees_and_speaks_of_no_cavities(verified: Verified):
 
 
 def test_the_uniform_infills_of_the_same_walls_fall_short(verified: Verified):
-    gyroid, lightning = verified.others
+    gyroid, lightning = verified.baselines
     assert gyroid.mass_g > lightning.mass_g
     assert max(gyroid.tilt_deg, lightning.tilt_deg) < LEAN
     assert verified.printed.mass_g > lightning.mass_g

@@ -119,6 +119,7 @@ def test_trimesh_units_are_honoured() -> None:
         from_trimesh(mesh)
 
 
+@pytest.mark.corpus
 def test_3mf_has_its_own_unit(models_dir: Path) -> None:
     path = models_dir / "3mf/mustpass/MUSTPASS_Chapter4.2_Components.3mf"
     own = read_mesh(path)

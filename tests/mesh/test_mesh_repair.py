@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from mesh_bodies import box, inside_out, joined, model, sphere
 
@@ -84,7 +85,7 @@ def test_shells(parts: list[Any], rung: str, volume: float, count: tuple[int, in
     assert solid.repair.moved_max_mm < 1e-9
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.integers(0, 2**31))
 def test_boxes_at_random_unite_to_their_measure(seed: int) -> None:
     """Boxes on whole millimetres: the union is counted cell by cell."""

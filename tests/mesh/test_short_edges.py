@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
@@ -36,7 +37,7 @@ def test_a_step_that_is_long_enough_stays():
     assert contract_short_edges(ball, 0.002) is ball
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.lists(st.tuples(*[st.floats(-3, 3)] * 3), min_size=8, max_size=40))
 def test_heaps_of_balls_lose_their_short_edges_and_stay_solids(places):
     heap = Manifold()

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
@@ -104,7 +105,7 @@ def test_near_keeps_what_meets_a_box():
     assert kept.low_mm[:, 2].min() == 9
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.integers(0, 10**6), st.sampled_from([0.0, 0.3, 0.7]))
 def test_the_rule_flags_the_same_as_word_by_word(seed, phase):
     """Random rooms: blocks of balls, cones and boxes less others, ceilings of every kind."""
@@ -130,7 +131,7 @@ def test_the_rule_flags_the_same_as_word_by_word(seed, phase):
     assert quick.islands == slow.islands
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(
     st.lists(
         st.tuples(st.floats(0, 360), st.floats(0.5, 0.93), st.floats(0, 3)), min_size=3, max_size=7

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from paper_models import random_solid, voxelize
 from paper_reference import run_autograd
@@ -62,7 +63,7 @@ def test_densities_have_moved_by_the_steps_compared():
     assert fast.trace == pytest.approx(plain.trace, abs=1e-3)
 
 
-@settings(max_examples=8)
+@examples(8)
 @given(st.integers(0, 10_000))
 def test_plane_is_never_above_adam(seed):
     chosen = PaperSettings(resolution=12)

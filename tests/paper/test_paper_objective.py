@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from paper_models import box, random_solid
 from paper_reference import Autograd
@@ -95,7 +96,7 @@ def test_smoothing_leaves_the_shell_and_clears_the_outside():
 
 
 @pytest.mark.parametrize("change", ABLATIONS, ids=str)
-@settings(max_examples=12)
+@examples(12)
 @given(seed=st.integers(0, 10_000))
 def test_value_and_gradient_match_convolution_and_autograd(change, seed):
     """Frozen noise included, in float64, for every ablation."""

@@ -4,7 +4,8 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from paper_models import box, random_solid, voxelize
 
@@ -50,7 +51,7 @@ def test_without_smoothing_the_filling_is_exactly_the_half_space():
     assert 0 < filled.mean() < 1
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(st.integers(0, 10_000), st.booleans())
 def test_no_filling_of_a_tiny_solid_is_better(seed, smoothing):
     """A box with bumps: all fillings of its dozen interior voxels are tried, contact fixed."""

@@ -17,6 +17,9 @@ from printprep.pipeline.hollow import hollow
 from printprep.pipeline.options import FillOptions
 from printprep.report.chart import chart
 
+# One worker explores the prism for all of them
+pytestmark = pytest.mark.xdist_group("explored prism")
+
 
 @pytest.fixture(scope="module")
 def prism(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -13,9 +13,11 @@ from printprep.errors import UsageError
 from printprep.mesh.measure import arrays, mass_properties
 from printprep.pipeline.hollow import hollow
 from printprep.result import HollowResult
+from printprep.types import Advice
 
 WALL = 1.2
 GRAMS = 1.24 / 1000
+SLOW = pytest.mark.slow
 
 
 def hollowed(manifold: Manifold, **options: object) -> HollowResult:
@@ -59,8 +61,9 @@ def test_a_cone() -> None:
     assert result.stability.centre_of_mass_mm[2] == pytest.approx(centre, abs=0.15)
 
 
-def test_a_ball_gets_a_seat_and_stands() -> None:
-    result = hollowed(solids.sphere(20))
+@pytest.mark.parametrize("segments", [48, pytest.param(256, marks=SLOW)])
+def test_a_ball_gets_a_seat_and_stands(segments: int) -> None:
+    result = hollowed(solids.sphere(20, segments))
     base = result.part.base
     assert base is not None
     shell = 4 / 3 * np.pi * (20**3 - (20 - WALL) ** 3) * GRAMS
@@ -140,6 +143,7 @@ def test_two_bodies_each_stand_by_themselves() -> None:
     assert result.stability.tilt_deg >= 4.0  # type: ignore[operator]
 
 
+@SLOW
 def test_the_same_model_gives_the_same_part() -> None:
     first, second = (hollowed(solids.leaning_prism(20, 60, 20)) for _ in range(2))
     for a, b in zip(arrays(first.part.manifold), arrays(second.part.manifold), strict=True):
@@ -153,6 +157,7 @@ def test_the_paper_objective_fills_below_a_plane() -> None:
     assert result.wall_min_mm is None or result.wall_min_mm >= WALL - 0.05
 
 
+@SLOW
 def test_a_lean_toward_the_safe_side_needs_no_ballast() -> None:
     # It leans to +x; toward −x it has plenty of room, and only has to stand upright besides.
     prism = solids.leaning_prism(20, 60, 16)
@@ -171,24 +176,53 @@ def test_a_lean_toward_a_corner_is_kinder_than_toward_a_side() -> None:
     assert hollowed(box, base="never", lean=8.0).stability.tilt_deg < 45.0  # type: ignore[operator]
 
 
-@pytest.mark.parametrize("asked", ["ten", "10@", "@90", "61", "-1", "nan"])
-def test_a_lean_that_cannot_be_meant_is_refused(asked: str) -> None:
+@pytest.mark.parametrize("lean", ["ten", "10@", "@90", "61", "-1", "nan"])
+def test_a_lean_that_cannot_be_meant_is_refused(lean: str) -> None:
     with pytest.raises(UsageError, match="lean"):
-        hollowed(solids.box(10, 10, 10), lean=asked)
+        hollowed(solids.box(10, 10, 10), lean=lean)
 
 
-def test_a_lean_out_of_reach_says_what_would_reach_it() -> None:
-    # A post of 10 × 10 × 120 mm: full or empty its centre is at 60 at best a bit lower.
+# A post of 10 × 10 × 120 mm: full or empty its centre is at 60 at best a bit lower
+out_of_reach = pytest.mark.xdist_group("lean out of reach")
+
+
+def post_grown(most_mm: float, lean: float, resolution: int) -> HollowResult:
+    overrides = {"stability.base_growth_max_mm": most_mm}
     post = solids.box(10, 10, 120)
-    result = hollowed(post, lean=30.0, overrides={"stability.base_growth_max_mm": 1.0})
-    assert result.density.reachable_deg is not None
-    advice = result.advice
-    assert advice is not None and advice.growth_mm is not None
-    key = {"stability.base_growth_max_mm": advice.growth_mm}
-    assert hollowed(post, lean=30.0, overrides=key).density.reachable_deg is None
-    less = {"stability.base_growth_max_mm": advice.growth_mm - 0.5}
-    assert hollowed(post, lean=30.0, overrides=less).density.reachable_deg is not None
-    # Lying down: the centre 5 above a foot of 10 × 120.
+    return hollowed(post, lean=lean, resolution=resolution, overrides=overrides)
+
+
+@pytest.fixture(scope="module", params=[(9.0, 24), pytest.param((30.0, 48), marks=SLOW)])
+def asked(request: pytest.FixtureRequest) -> tuple[float, int]:
+    """A lean in degrees that the post does not reach on a foot 1 mm wider, and a resolution."""
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def advice(asked: tuple[float, int]) -> Advice:
+    found = post_grown(1.0, *asked)
+    assert found.density.reachable_deg is not None
+    assert found.advice is not None and found.advice.growth_mm is not None
+    return found.advice
+
+
+@out_of_reach
+def test_the_growth_that_is_named_reaches_the_lean(
+    advice: Advice, asked: tuple[float, int]
+) -> None:
+    assert post_grown(advice.growth_mm, *asked).density.reachable_deg is None
+
+
+@out_of_reach
+def test_half_a_millimetre_less_than_is_named_does_not_reach_it(
+    advice: Advice, asked: tuple[float, int]
+) -> None:
+    assert post_grown(advice.growth_mm - 0.5, *asked).density.reachable_deg is not None
+
+
+@out_of_reach
+def test_the_pose_that_is_named_lies_down(advice: Advice) -> None:
+    # The centre 5 above a foot of 10 × 120
     assert advice.poses_deg[0] == pytest.approx(45.0, abs=0.01)
 
 
@@ -204,9 +238,10 @@ def test_a_pose_lays_the_model_down() -> None:
         hollowed(solids.box(10, 10, 120), pose=99)
 
 
-def test_vaults_are_weighed_in_the_program() -> None:
+@pytest.mark.parametrize("size", [(16, 34, 9), pytest.param((24, 50, 14), marks=SLOW)])
+def test_vaults_are_weighed_in_the_program(size: tuple[float, float, float]) -> None:
     # A tall box leaning a little: its flat ceiling is carried, and that mass is high up.
-    prism = solids.leaning_prism(24, 50, 14)
+    prism = solids.leaning_prism(*size)
     options = {"base": "never", "lean": 6.0}
     plain = hollowed(prism, **options)
     held = hollowed(prism, self_support=None, **options)
@@ -222,15 +257,19 @@ def test_vaults_are_weighed_in_the_program() -> None:
     assert plain.supports is None
 
 
-def test_supports_go_by_the_process() -> None:
+@pytest.mark.parametrize(("profile", "held"), [("fdm-pla-0.4", True), ("resin-standard", False)])
+def test_supports_go_by_the_process(profile: str, held: bool) -> None:
     block = solids.box(20, 20, 20)
-    assert hollowed(block, self_support=None, resolution=24).supports is not None
-    resin = {"profile": "resin-standard", "resolution": 24}
-    assert hollowed(block, self_support=None, **resin).supports is None
+    result = hollowed(block, self_support=None, profile=profile, resolution=24)
+    assert (result.supports is not None) == held
+
+
+def test_supports_are_refused_where_the_process_has_none() -> None:
     with pytest.raises(UsageError, match="resin"):
-        hollowed(block, self_support=True, **resin)
+        hollowed(solids.box(20, 20, 20), self_support=True, profile="resin-standard", resolution=24)
 
 
+@SLOW
 def test_adam_comes_to_about_what_the_plane_is() -> None:
     prism = solids.leaning_prism(20, 60, 12)
     options = {"objective": "paper", "resolution": 32, "base": "never"}

@@ -127,7 +127,7 @@ def test_success_without_a_gcode_is_no_success(tmp_path: Path, block: Path) -> N
 def test_every_call_empties_the_hook_and_keeps_to_its_own_folder(
     tmp_path: Path, block: Path
 ) -> None:
-    body = "open(os.environ['SAID'], 'w').write(repr(sys.argv))\nsys.exit(1)"
+    body = "open(os.environ['SAID'], 'w', encoding='utf-8').write(repr(sys.argv))\nsys.exit(1)"
     said = tmp_path / "said"
     speaking = Slicer(pretend(tmp_path, body), "P", (2, 5, 0))
     for call in (

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 from dev_hollowable import hollowable_of
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
@@ -91,7 +92,7 @@ def test_resin_has_no_vaults():
         vaulted(box(9, 9, 9), load_profile("resin-standard"))
 
 
-@settings(max_examples=8)
+@examples(8)
 @given(
     st.floats(3, 9),
     st.floats(3, 9),

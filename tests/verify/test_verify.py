@@ -6,6 +6,7 @@ import json
 import zipfile
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -27,6 +28,8 @@ from printprep.verify.rules import compare, contact_offset_mm, support_inside
 from printprep.verify.run import Verified, settings_for, slice_and_measure, verify
 
 slicing = pytest.mark.slicer
+# One worker makes the block and slices it for all of them
+pytestmark = pytest.mark.xdist_group("verified block")
 
 
 @pytest.fixture(scope="module")
@@ -298,6 +301,26 @@ def test_another_model_is_not_compared_with(block: Path, prusa_slicer: Path, tmp
 def test_a_missing_slicer_is_a_tool_error(block: Path, tmp_path: Path):
     with pytest.raises(ToolError):
         verify(block, slicer=tmp_path / "none")
+
+
+def test_the_command_on_a_print_as_computed_and_on_a_heavier_one(
+    block: Path, monkeypatch: pytest.MonkeyPatch, capsys
+):
+    """With a stand-in for the slicer, whose prints are made up."""
+    heavier = 1.0
+    slicer = SimpleNamespace(name="PrusaSlicer 2.5.0")
+    monkeypatch.setattr("printprep.slicer.process.find_slicer", lambda _: slicer)
+    monkeypatch.setattr(
+        "printprep.verify.run.slice_and_measure",
+        lambda _, part, *__: (as_printed(part, mass_g=part.mass_g * heavier), ()),
+    )
+    assert run(["verify", str(block), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["findings"] == [] and said["part"] == str(block)
+    assert said["printed"]["tilt_deg"] == pytest.approx(said["computed"]["tilt_deg"])
+    heavier = 1.2
+    assert run(["verify", str(block), "--fail-on", "warning"]) == 1
+    assert "printed-mass" in capsys.readouterr().out
 
 
 @slicing
