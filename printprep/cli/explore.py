@@ -13,10 +13,10 @@ from printprep.cli.options import (
     json_option,
     model_argument,
     overrides,
+    path_option,
     placement_of,
     placement_options,
     profile_option,
-    quiet_option,
     resolution_option,
     self_support_option,
     set_option,
@@ -48,14 +48,13 @@ Examples:
     metavar="COUNT",
     help="Number of leans to solve, evenly spaced from 0° to the largest that any filling reaches.",
 )
-@click.option(
+@path_option(
     "--chart",
-    type=click.Path(path_type=Path),
     metavar="OUT.svg|OUT.png",
     help="Draw the curve into this file.",
 )
 @json_option
-@quiet_option
+@click.option("-q", "--quiet", is_flag=True, help="Print no progress on stderr.")
 def command(
     model: Path,
     profile: str,

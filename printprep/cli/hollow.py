@@ -13,6 +13,7 @@ from printprep.cli.options import (
     model_argument,
     output_form_options,
     overrides,
+    path_option,
     placement_of,
     placement_options,
     profile_options,
@@ -42,10 +43,9 @@ Examples:
 
 @click.command("hollow", short_help="Hollow a model and write the part.", epilog=_EPILOG)
 @model_argument
-@click.option(
+@path_option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
     metavar="FILE",
     help="File to write: .3mf (which carries the print settings), .stl, .obj or .ply. An existing "
     "file is replaced. Default: MODEL-hollow.3mf in the current folder.",
@@ -122,9 +122,8 @@ Examples:
     help="Diameter of the drain holes (profile key drain.diameter_mm).",
 )
 @click.option("--no-drains", is_flag=True, help="Leave the cavities sealed.")
-@click.option(
+@path_option(
     "--plugs",
-    type=click.Path(path_type=Path),
     metavar="OUT.3mf",
     help="Also write tapered plugs for the drain holes, each as its own object.",
 )

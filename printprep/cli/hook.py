@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from printprep.cli.options import (
+    path_option,
     placement_of,
     placement_options,
     profile_option_with,
@@ -36,9 +37,8 @@ Examples:
     is_flag=True,
     help="Fail on an error, such as a print that tips over, so that the slicer reports it.",
 )
-@click.option(
+@path_option(
     "--part",
-    type=click.Path(path_type=Path),
     metavar="OUT.3mf",
     help="Compare the print with the figures of this part, made by `printprep hollow`.",
 )
@@ -47,9 +47,8 @@ Examples:
     is_flag=True,
     help="Hollow --model with the settings of the G-code, slice it, and replace GCODE.",
 )
-@click.option(
+@path_option(
     "--model",
-    type=click.Path(path_type=Path),
     metavar="MODEL",
     help="The model that was sliced, for --reslice.",
 )

@@ -140,11 +140,14 @@ def profile_options(command: Command) -> Command:
     )(command)
 
 
+def path_option(*names: str, metavar: str, help: str) -> Callable[[Command], Command]:
+    """An option that takes a path, which need not exist.  names : as click takes them."""
+    return click.option(*names, type=click.Path(path_type=Path), metavar=metavar, help=help)
+
+
 def slicer_option(description: str) -> Callable[[Command], Command]:
     """The slicer to run, with what a command needs it for."""
-    return click.option(
-        "--slicer", type=click.Path(path_type=Path), metavar="PATH", help=description
-    )
+    return path_option("--slicer", metavar="PATH", help=description)
 
 
 def fail_on_option(default: str, consequence: str = "") -> Callable[[Command], Command]:

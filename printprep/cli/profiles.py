@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from printprep.cli.options import json_option, overrides, set_option
+from printprep.cli.options import json_option, overrides, path_option, set_option
 from printprep.errors import UsageError
 
 
@@ -51,12 +51,11 @@ def show_command(name: str, as_json: bool) -> None:
         click.echo(profile_source(name), nl=False)
 
 
-@command.command("export")
+@command.command("export", short_help="Export a profile for PrusaSlicer.")
 @click.argument("name")
-@click.option(
+@path_option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
     metavar="FILE",
     help="The .ini file to write; an existing file is replaced. Default: stdout.",
 )

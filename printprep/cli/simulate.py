@@ -13,6 +13,7 @@ from printprep.cli.options import (
     model_argument,
     output_form_options,
     overrides,
+    path_option,
     placement_of,
     placement_options,
     profile_options,
@@ -32,15 +33,13 @@ Examples:
 @model_argument
 @profile_options
 @placement_options
-@click.option(
+@path_option(
     "--gif",
-    type=click.Path(path_type=Path),
     metavar="OUT.gif",
     help="Draw an animation: the bed tilts toward the weakest edge until the part tips.",
 )
-@click.option(
+@path_option(
     "--strip",
-    type=click.Path(path_type=Path),
     metavar="OUT.png",
     help="Draw the same as six pictures side by side.",
 )

@@ -10,6 +10,7 @@ from printprep.cli.options import (
     exit_code,
     fail_on_option,
     json_option,
+    path_option,
     quiet_option,
     slicer_option,
     traceback_option,
@@ -26,17 +27,15 @@ Examples:
 @click.command("verify", short_help="Slice a part and measure its G-code.", epilog=_EPILOG)
 @click.argument("part", type=click.Path(path_type=Path), metavar="PART.3mf")
 @slicer_option("PrusaSlicer to use. Default: PRINTPREP_SLICER, or the one installed.")
-@click.option(
+@path_option(
     "--load",
-    type=click.Path(path_type=Path),
     metavar="CONFIG.ini",
     help="Slice with these settings (an .ini, or a G-code file that carries them) instead of the "
     "profile's.",
 )
-@click.option(
+@path_option(
     "--compare",
     "compare_with",
-    type=click.Path(path_type=Path),
     metavar="MODEL",
     help="The model that the part was made from. It is sliced too, with 15 % gyroid infill and "
     "with lightning infill, and with walls of the same thickness.",
