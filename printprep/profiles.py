@@ -57,10 +57,10 @@ def load_profile(
     Raises UsageError that names the file, the key and the allowed range.
     """
     if isinstance(name_or_path, Profile):
-        source, data = f"profile {name_or_path.name}", name_or_path.model_dump()
+        source, data = f"Profile {name_or_path.name}", name_or_path.model_dump()
     else:
         path = _find(name_or_path)
-        source = str(name_or_path) if path.parent != _folder() else f"profile {path.stem}"
+        source = str(name_or_path) if path.parent != _folder() else f"Profile {path.stem}"
         try:
             data = tomllib.loads(profile_source(name_or_path))
         except tomllib.TOMLDecodeError as error:
@@ -127,10 +127,11 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
         key = item.get("ctx", {}).get("key") or ".".join(path)
         facts.setdefault(key, _fact(item["type"], path, item))  # a list's items count as one
     if overrides:
-        source = f"{source} as overridden"
+        source = f"{source} with the keys that were set"
     lines = [f"{key} {fact}" for key, fact in facts.items()]
     return UsageError(
-        f"{source}: {'; '.join(lines)}.", "printprep profiles show NAME shows every key in use."
+        f"{source}: {'; '.join(lines)}.",
+        "`printprep profiles show NAME` shows every key in use.",
     )
 
 
