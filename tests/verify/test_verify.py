@@ -98,7 +98,7 @@ def test_thick_walls_weigh_what_was_computed(prusa_slicer: Path, tmp_path: Path,
 @slicing
 def test_what_else_the_model_could_be(verified: Verified):
     gyroid, lightning = verified.baselines
-    assert (gyroid.name, lightning.way) == ("15 % gyroid", "lightning infill")
+    assert (gyroid.name, lightning.name) == ("15 % gyroid", "lightning infill")
     assert gyroid.mass_g > lightning.mass_g > 0.8 * verified.printed.mass_g
     for other in verified.baselines:
         assert other.seconds is not None and other.seconds > 60
