@@ -20,7 +20,9 @@ UNITS = ("mm", "cm", "m", "in")
 DEFAULT_PROFILE = "fdm-pla-0.4"
 
 
-def _together(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+def together(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Several options as one decorator, in the order of --help."""
+
     def decorate(command: Command) -> Command:
         for option in reversed(options):
             command = option(command)
@@ -36,7 +38,7 @@ def model_argument(command: Command) -> Command:
 
 def placement_options(command: Command) -> Command:
     """Unit, axis and size of the model."""
-    return _together(
+    return together(
         click.option(
             "--units",
             type=click.Choice(UNITS),
@@ -120,7 +122,7 @@ def profile_option(command: Command) -> Command:
 
 def profile_options(command: Command) -> Command:
     """Printer, material and limits, and single keys of them."""
-    return _together(
+    return together(
         profile_option,
         set_option,
         click.option(
@@ -178,7 +180,7 @@ def output_form_options(
     default_fail_on: str, consequence: str = ""
 ) -> Callable[[Command], Command]:
     """How results are printed, and which findings count as a failure."""
-    return _together(
+    return together(
         fail_on_option(default_fail_on, consequence),
         json_option,
         quiet_option,

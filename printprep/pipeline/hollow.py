@@ -130,6 +130,9 @@ def hollow(
 
 def check_options(profile: Profile, options: FillOptions) -> None:
     """Raise UsageError for options that exclude each other, or that the profile excludes."""
+    from printprep.stand.lean import lean_of
+
+    lean_of(options.lean, profile.stability.lean_deg)
     check_resolution(options.resolution)
     check_solver(objective_of(options.objective), options.solver)
     fill_of(options.fill).check(profile, options)

@@ -108,10 +108,6 @@ def check_job(job: Job) -> Profile:
     Raises UsageError, OutputError or ToolError, as ``run_job`` would later.
     """
     from printprep.output.limits import check_output
-    from printprep.output.manual_settings import check_slicer
-    from printprep.pipeline.hollow import check_options
-    from printprep.profiles import load_profile
-    from printprep.verify.unwritten import check_verifiable
 
     check_output(job.output)
     if job.output.exists() and job.model.exists() and job.output.samefile(job.model):
@@ -119,6 +115,21 @@ def check_job(job: Job) -> Profile:
             f"{job.output} is the model, which would be replaced.",
             "Name another file with --output.",
         )
+    profile = check_settings(job)
+    _check_plugs(job)
+    return profile
+
+
+def check_settings(job: Job) -> Profile:
+    """Check that a job's options go together, whatever its files; return its profile.
+
+    Raises UsageError, or ToolError where a slicer is needed and missing.
+    """
+    from printprep.output.manual_settings import check_slicer
+    from printprep.pipeline.hollow import check_options
+    from printprep.profiles import load_profile
+    from printprep.verify.unwritten import check_verifiable
+
     profile = load_profile(job.profile, job.overrides)
     check_slicer(profile, job.written_for)
     _check_drains(job, profile)
@@ -136,14 +147,17 @@ def check_job(job: Job) -> Profile:
 
 
 def _check_drains(job: Job, profile: Profile) -> None:
-    from printprep.output.limits import check_output
-
     if not profile.drain.count and (job.plugs is not None or "drain.diameter_mm" in job.overrides):
         what = "--plugs has" if job.plugs is not None else "A drain diameter has"
         raise UsageError(
             f"{what} no effect: profile {profile.name} makes no drain holes.",
             "Request drain holes with --drains N, or choose a profile for resin or powder.",
         )
+
+
+def _check_plugs(job: Job) -> None:
+    from printprep.output.limits import check_output
+
     if job.plugs is None:
         return
     if job.plugs.suffix.lower() != ".3mf":
