@@ -12,7 +12,7 @@ from printprep.evaluate.cases import Case, DataSet
 from printprep.evaluate.measured import Measured, evaluate_case, make_folder
 from printprep.evaluate.methods import Method
 from printprep.evaluate.picture import Voxels
-from printprep.pool import run_each
+from printprep.pool import run_here
 
 Told = Callable[[str, int, int], None]
 """Called with a model's name, how many are done and how many there are."""
@@ -57,7 +57,7 @@ def evaluate(
     found: dict[str, tuple[Measured, ...]] = {}
     failed: dict[str, PrintprepError] = {}
     job = partial(_outcome, chosen=tuple(chosen), kept=kept, voxels=voxels)
-    for done, (case, outcome) in enumerate(run_each(job, models.cases, workers), start=1):
+    for done, (case, outcome) in enumerate(run_here(job, models.cases, workers), start=1):
         if isinstance(outcome, PrintprepError):
             failed[case.name] = outcome
         else:

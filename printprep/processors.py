@@ -1,0 +1,25 @@
+"""Processors for one worker of several, so that their native threads do not crowd each other.
+
+The libraries below (TBB in manifold3d, OpenMP, BLAS) take as many threads as a process may run on
+processors, so a worker that is bound to its own has threads for these alone.
+"""
+
+from __future__ import annotations
+
+import os
+
+
+def bind(slot: int, slots: int) -> int:
+    """Bind this process to its share of the processors; returns how many those are.
+
+    slot : which worker of the machine this is, from 0;  slots : how many there are.  Where the
+    system cannot bind (macOS, Windows), nothing is done.
+    """
+    if not hasattr(os, "sched_setaffinity"):
+        return os.cpu_count() or 1
+    here = sorted(os.sched_getaffinity(0))
+    each = max(1, len(here) // slots)
+    first = (slot * each) % len(here)
+    mine = [here[(first + k) % len(here)] for k in range(each)]
+    os.sched_setaffinity(0, mine)
+    return len(mine)
