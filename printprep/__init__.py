@@ -18,6 +18,7 @@ from printprep.version import __version__
 
 if TYPE_CHECKING:
     from printprep import generators
+    from printprep.batches.run import batch
     from printprep.errors import (
         GeometryError,
         InputError,
@@ -42,6 +43,7 @@ __all__ = [
     "ToolError",
     "UsageError",
     "__version__",
+    "batch",
     "generators",
     "hollow",
     "load_profile",
@@ -57,6 +59,7 @@ _HOME = {
     "Profile": "printprep.profiles",
     "ToolError": "printprep.errors",
     "UsageError": "printprep.errors",
+    "batch": "printprep.batches.run",
     "hollow": "printprep.pipeline.hollow",
     "load_profile": "printprep.profiles",
 }

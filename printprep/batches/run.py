@@ -1,0 +1,179 @@
+"""A batch: many models with one journal; what ends becomes a row, whatever it ends with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from printprep.batches.item import (
+    Item,
+    found_models,
+    items_of,
+    key_of,
+    refuse_clashes,
+)
+from printprep.batches.journal import NAME, Journal, is_complete, rows_in
+from printprep.batches.row import Row, Told
+from printprep.errors import PrintprepError, UsageError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+    from printprep.pipeline.job import Job
+
+
+@dataclass(frozen=True)
+class BatchOptions:
+    """How a batch runs.
+
+    workers : processes on this machine, None for one a core;  memory_mib : for all of them.
+    timeout_s : for one model;  resume : go on where the journal ends.
+    transfer : on a cluster, send models with their jobs and bring parts back.
+    """
+
+    workers: int | None = None
+    memory_mib: float | None = None
+    timeout_s: float | None = None
+    resume: bool = False
+    transfer: bool = False
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A batch that was checked: what is to run, and the rows that stand already."""
+
+    folder: Path
+    items: tuple[Item, ...]
+    left: tuple[Item, ...]
+    kept: tuple[Row, ...] = field(default=())
+
+
+def batch(
+    inputs: Sequence[str | Path],
+    options: Job | None = None,
+    *,
+    output: str | Path,
+    client: Client | None = None,
+    run: BatchOptions | None = None,
+) -> Iterator[Row]:
+    """Hollow many models; yields a row for each as it ends, the ones that stand already first.
+
+    Parameters
+    ----------
+    inputs : files, folders and patterns.
+    options : a job whose options all models get; its own model and output do not count.
+    output : the folder for parts and journal.
+    client : of a Dask cluster; None runs on this machine.
+
+    Raises
+    ------
+    UsageError, InputError, OutputError, ToolError : before the first model starts; what happens
+        to a model afterwards is its row.
+    """
+    from printprep.pipeline.job import Job
+
+    folder, how = Path(output), run or BatchOptions()
+    template = options or Job(Path(), Path())
+    planned = plan(items_of(found_models(inputs), template, folder), folder, resume=how.resume)
+    yield from planned.kept
+    yield from run_batch(planned, how, client)
+
+
+def plan(items: Sequence[Item], folder: Path, *, resume: bool) -> Planned:
+    """Check all of a batch before its first model starts.
+
+    Raises UsageError for options or names that cannot be, OutputError for a folder that refuses.
+    """
+    refuse_clashes(items)
+    check_jobs(items)
+    _make_folder(folder)
+    if not resume:
+        if (folder / NAME).exists():
+            raise UsageError(
+                f"{folder} holds the journal of an earlier batch.",
+                "Add --resume to go on with it, or name another folder.",
+            )
+        return Planned(folder, tuple(items), tuple(items))
+    rows = rows_in(folder)
+    complete = {i.output for i in items if is_complete(i, rows.get(i.output), folder)}
+    return Planned(
+        folder,
+        tuple(items),
+        tuple(item for item in items if item.output not in complete),
+        tuple(rows[item.output] for item in items if item.output in complete),
+    )
+
+
+def check_jobs(items: Sequence[Item]) -> None:
+    """Raise the error of the first job whose options do not go together, with its model's name."""
+    from printprep.output.limits import SUFFIXES
+    from printprep.pipeline.job import check_settings
+
+    checked: set[str] = set()
+    for item in items:
+        suffix = item.job.output.suffix
+        if suffix not in SUFFIXES:
+            raise UsageError(f"{suffix} is not a format that printprep writes.")
+        # But for the files, most models of a batch have the same job
+        options = repr(replace(item.job, model=Path(), output=Path(suffix), plugs=None))
+        if options in checked:
+            continue
+        try:
+            check_settings(item.job)
+        except PrintprepError as error:
+            raise type(error)(f"{item.name}: {error.message}", error.hint) from error
+        checked.add(options)
+
+
+def run_batch(planned: Planned, how: BatchOptions, client: Client | None = None) -> Iterator[Row]:
+    """Run what is left of a batch; each row is in the journal before it is yielded."""
+    if client is None:
+        from printprep.batches.local import run_locally
+
+        ended = run_locally(
+            planned.left,
+            workers=how.workers,
+            memory_mib=how.memory_mib,
+            timeout_s=how.timeout_s,
+        )
+    else:
+        from printprep.batches.cluster import run_on_cluster
+
+        ended = run_on_cluster(planned.left, client, transfer=how.transfer, timeout_s=how.timeout_s)
+    with Journal(planned.folder) as journal:
+        for item, told in ended:
+            row = _row(item, _with_output(item, told, planned.folder))
+            journal.append(row)
+            yield row
+
+
+def _row(item: Item, told: Told) -> Row:
+    return Row(
+        name=item.name, output=item.output, status=told.status, key=key_of(item), **told.facts
+    )
+
+
+def _with_output(item: Item, told: Told, folder: Path) -> Told:
+    """Write the part that came back from a worker."""
+    from printprep.files import write_atomically
+
+    if told.output is None:
+        return told
+    target = folder / item.output
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(target, told.output)
+    return replace(told, output=None)
+
+
+def _make_folder(folder: Path) -> None:
+    from printprep.errors import OutputError
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise OutputError(
+            f"{folder} cannot be made a folder: {reason}.", "Name another folder with -o."
+        ) from error
