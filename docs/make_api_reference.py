@@ -14,6 +14,8 @@ from types import ModuleType
 from typing import Any
 
 import printprep
+from printprep.batches.row import Row
+from printprep.batches.run import BatchOptions
 from printprep.generators import VoxelHollow
 from printprep.generators.hollow import hollow as hollow_voxels
 from printprep.objectives import Solver
@@ -59,6 +61,7 @@ _PAGE: tuple[tuple[str, tuple[Any, ...]], ...] = (
     ("Figures in a 3MF", (Figures,)),
     ("Check, simulate, explore, verify", (check, Checked, simulate, Simulated, Simulation)),
     ("", (explore, Exploration, verify, Verified)),
+    ("Many models", (printprep.batch, BatchOptions, Row)),
     ("Voxels of a generator", (printprep.generators, hollow_voxels, VoxelHollow)),
     (
         "Errors",
