@@ -15,7 +15,6 @@ import argparse
 import itertools
 import os
 import sys
-import threading
 import time
 from collections import Counter
 from dataclasses import replace
@@ -68,8 +67,7 @@ def models(table: Path, work: Path, count: int, resolution: int) -> int:
         for row in run_batch(plan(moved, there, resume=False), BatchOptions(), client):
             ended.append(row)
             if len(ended) == count // 4:
-                # Only one worker is left from here: throughput is measured below, undisturbed
-                threading.Thread(target=found.kill_worker).start()
+                found.kill_worker(restarts=True)
         print(f"two workers, one killed after {count // 4}: {time.perf_counter() - start:.0f} s")
         outputs = Counter(row.output for row in ended)
         twice, lost = sum(n > 1 for n in outputs.values()), len(items) - len(outputs)

@@ -27,9 +27,17 @@ class Cluster:
         """End the scheduler."""
         os.killpg(self.scheduler.pid, signal.SIGKILL)
 
-    def kill_worker(self, number: int = 0) -> None:
-        """End a worker and its nanny as the system does when memory runs out."""
-        os.killpg(self.workers[number].pid, signal.SIGKILL)
+    def kill_worker(self, number: int = 0, *, restarts: bool = False) -> None:
+        """End a worker as the system does when memory runs out.
+
+        restarts : leave its nanny, which starts another one (Linux).
+        """
+        pid = self.workers[number].pid
+        if not restarts:
+            os.killpg(pid, signal.SIGKILL)
+            return
+        for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+            os.kill(int(child), signal.SIGKILL)
 
 
 @contextmanager
