@@ -153,6 +153,8 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
 
 
 def _must_be(message: str) -> str:
+    if "valid dictionary" in message:
+        return "must be a table"
     return message.replace("Input should be", "must be")
 
 

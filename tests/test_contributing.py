@@ -79,7 +79,6 @@ def test_the_process(monkeypatch, tower):
 def test_the_objective(monkeypatch, tower):
     row = last_value(example("objective"), {**vars(objectives), "replace": replace})
     monkeypatch.setitem(OBJECTIVES, row.name, row)
-    assert run(["hollow", str(tower), "-o", str(tower.with_suffix(".3mf")), "-q"]) == 0
     shell = printprep.hollow(tower, objective="shell", resolution=16)
     assert shell.density.planes == (None,)
 

@@ -22,10 +22,12 @@ def simulation_findings(simulation: Simulation, lean: Lean) -> Iterator[Finding]
     """Falls by itself, tips at less than the lean, or disagrees with the computed tilt angle."""
     settled = simulation.settled
     if not settled.stands:
+        fall = (
+            f"falls over: after {settled.seconds:g} s it has turned by {settled.rotation_deg:.1f}°"
+        )
         yield finding(
             "simulated-fall",
-            f"In simulation the part falls over: after {settled.seconds:g} s it has turned by "
-            f"{settled.rotation_deg:.1f}°.",
+            f"In simulation the part {fall if simulation.tippings else 'has no foot to stand on'}.",
             _FIX,
             value=settled.rotation_deg,
         )

@@ -40,7 +40,9 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
         "unsupported-ceiling",
         f"{ceilings.area_mm2:.1f} mm² of cavity ceilings, over all layers, are "
         f"unsupported{islands}: a slicer prints supports there, which stay inside.",
-        "Hollow the solid model with `printprep hollow`, which adds vaults for filament.",
+        "Leave out --no-self-support: vaults then carry the ceilings."
+        if context.hollowed
+        else "Hollow the solid model with `printprep hollow`, which adds vaults for filament.",
         value=ceilings.area_mm2,
         limit=AREA_MM2,
         at_mm=worst.at_mm,

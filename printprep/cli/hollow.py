@@ -33,7 +33,7 @@ Examples:
     "file is replaced. Default: MODEL-hollow.3mf in the current folder.",
 )
 @part_options
-@click.option(
+@path_option(
     "--plugs",
     metavar="OUT.3mf",
     help="Also write tapered plugs for the drain holes, each as its own object.",

@@ -132,13 +132,18 @@ def profile_options(command: Command) -> Command:
             metavar="MM",
             help="Thinnest wall (profile key wall_mm).",
         ),
-        click.option(
-            "--lean",
-            "lean",
-            metavar="DEG[@AZIMUTH]",
-            help="Lean at which the part must still stand: in every direction (15), or toward one "
-            "azimuth (15@90; counter-clockwise from +x). Default: the profile's.",
-        ),
+        lean_option,
+    )(command)
+
+
+def lean_option(command: Command) -> Command:
+    """The lean that the part must stand."""
+    return click.option(
+        "--lean",
+        "lean",
+        metavar="DEG[@AZIMUTH]",
+        help="Lean at which the part must still stand: in every direction (15), or toward one "
+        "azimuth (15@90; counter-clockwise from +x). Default: the profile's.",
     )(command)
 
 

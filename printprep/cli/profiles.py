@@ -39,7 +39,7 @@ def list_command(as_json: bool) -> None:
 def show_command(name: str, as_json: bool) -> None:
     """Show profile NAME as TOML, with the source of every figure.
 
-    --set takes its keys, written as TABLE.KEY for a key in a table.
+    The --set of other commands takes these keys, as TABLE.KEY for a key in a table.
     """
     from printprep.cli.console import print_json
     from printprep.profiles import load_profile, profile_source

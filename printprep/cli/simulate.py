@@ -10,13 +10,15 @@ import click
 from printprep.cli.options import (
     check_picture,
     exit_code,
+    lean_option,
     model_argument,
     output_form_options,
     overrides,
     path_option,
     placement_of,
     placement_options,
-    profile_options,
+    profile_option,
+    set_option,
 )
 
 _SUFFIXES = {"gif": (".gif",), "strip": (".png",)}
@@ -31,7 +33,9 @@ Examples:
 
 @click.command("simulate", short_help="Simulate how a part stands and tips.", epilog=_EPILOG)
 @model_argument
-@profile_options
+@profile_option
+@set_option
+@lean_option
 @placement_options
 @path_option(
     "--gif",
@@ -48,7 +52,6 @@ def command(
     model: Path,
     profile: str,
     settings: tuple[str, ...],
-    wall_mm: float | None,
     gif: Path | None,
     strip: Path | None,
     lean: str | None,
@@ -77,7 +80,7 @@ def command(
     found = simulate(
         model,
         profile=profile,
-        overrides=overrides(settings, wall_mm),
+        overrides=overrides(settings),
         placement=placement_of(placement),
         lean=lean,
         progress=progress,

@@ -71,7 +71,8 @@ def hollow(
 
     Parameters
     ----------
-    voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see `form.occupancy`.
+    voxels : coordinates (n, 3) or (n, 4), or a binary array (64, 64, 64); see
+        :func:`printprep.generators.voxel_arrays.occupancy`.
     objective : a name in :data:`printprep.objectives.OBJECTIVES`: "lean", the least material that
         stands at ``lean_deg`` (:mod:`printprep.paper.voxel_lean`), or "paper", the paper's terms.
     solver : of the paper's terms: "plane", or "adam" on ``device``.

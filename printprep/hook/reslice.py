@@ -107,7 +107,6 @@ def overrides_from(settings: Mapping[str, str]) -> dict[str, object]:
             "Use the hook from PrusaSlicer, or hollow the model first with `printprep hollow`.",
         )
     keys: dict[str, object] = {
-        "process": "fdm",
         "printer.nozzle_mm": nozzle[0],
         "printer.layer_height_mm": layer[0],
         "printer.first_layer_mm": _first_layer(settings, layer[0]),

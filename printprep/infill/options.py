@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
+from printprep.objectives import DEFAULT_OBJECTIVE
 
 if TYPE_CHECKING:
     from printprep.profiles import Profile
@@ -23,7 +24,7 @@ def check_infill(profile: Profile, *, objective: str, self_support: bool) -> Non
             "Set pattern and density, in a table [infill] of the profile or with --set "
             "infill.pattern=lightning --set infill.density=0.15.",
         )
-    if objective != "lean":
+    if objective != DEFAULT_OBJECTIVE:
         raise UsageError(
             f"The objective {objective} makes only cavities, not infill.",
             "Leave out --objective, or use --fill cavity.",

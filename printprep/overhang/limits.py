@@ -58,7 +58,7 @@ def acceptance(profile: Profile) -> Acceptance:
     if printer.line_width_mm is None:
         raise UsageError(
             f"Profile {profile.name} is for {profile.process}: it has no overhang rule.",
-            "Choose an fdm profile.",
+            "Choose a profile for filament.",
         )
     automatic = printer.line_width_mm / 2
     by_angle = printer.layer_height_mm / math.tan(math.radians(THRESHOLD_DEG + ADDED_DEG))

@@ -87,9 +87,7 @@ def explore(
     from printprep.types import Lean
 
     if not 2 <= count <= 200:
-        raise UsageError(
-            f"A curve cannot have {count} points.", "Choose --points between 2 and 200."
-        )
+        raise UsageError(f"--points {count} is not between 2 and 200.", "The default is 13.")
     check_resolution(options.resolution)
     settings = load_profile(profile, {**(overrides or {}), "stability.lean_margin_deg": 0.0})
     supports_wanted(options.self_support, settings)

@@ -151,7 +151,8 @@ def _check_drains(job: Job, profile: Profile) -> None:
         what = "--plugs has" if job.plugs is not None else "A drain diameter has"
         raise UsageError(
             f"{what} no effect: profile {profile.name} makes no drain holes.",
-            "Request drain holes with --drains N, or choose a profile for resin or powder.",
+            "Request drain holes with --drains N and --drain-diameter MM, or choose a profile for "
+            "resin or powder.",
         )
 
 

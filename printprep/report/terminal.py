@@ -81,7 +81,9 @@ def show_result(
         facts.add_row("seconds", f"{total:.2f} ({stages})")
     console.print(facts)
     shown = result.findings if findings is None else findings
-    show_findings(console, shown, hidden=_IN_TABLE if verbose else _IN_TABLE | _OF_THE_MODEL)
+    hidden = _IN_TABLE if verbose else _IN_TABLE | _OF_THE_MODEL
+    # What kept the part from being written is always shown
+    show_findings(console, shown, hidden=frozenset() if output is None else hidden)
     console.print()
     if output is None:
         console.print("Not written: a finding reached the --fail-on level.")

@@ -178,7 +178,6 @@ def test_a_gcodes_settings_become_keys_of_a_profile():
     }
     found = overrides_from(settings)
     assert found == {
-        "process": "fdm",
         "printer.nozzle_mm": 0.6,
         "printer.layer_height_mm": 0.3,
         "printer.first_layer_mm": pytest.approx(0.45),
