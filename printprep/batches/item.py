@@ -6,7 +6,6 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,6 @@ from printprep.version import __version__
 
 if TYPE_CHECKING:
     from printprep.pipeline.job import Job
-    from printprep.profiles import Profile
 
 SUFFIXES = (".stl", ".obj", ".ply", ".glb", ".3mf", ".npz", ".npy", ".pt")
 _GLOB = frozenset("*?[")
@@ -32,17 +30,20 @@ class Item:
     output: str
 
 
-def found_models(inputs: Iterable[str | Path]) -> Iterator[tuple[str, Path, Path]]:
+def found_models(
+    inputs: Iterable[str | Path], but: Path | None = None
+) -> Iterator[tuple[str, Path, Path]]:
     """Each model of files, folders and patterns: its name, its path, its place below the output.
 
     A folder gives all models in it, sorted, with its structure kept; a pattern what it matches.
+    but : a folder whose files are no models: that of the parts, where it lies among them.
 
     Raises InputError for a file or folder that is missing, and a pattern that matches nothing.
     """
     for given in inputs:
         path = Path(given)
         if path.is_dir():
-            inside = [item for item in sorted(path.rglob("*")) if _is_model(item)]
+            inside = [i for i in sorted(path.rglob("*")) if _is_model(i) and not _below(i, but)]
             if not inside:
                 raise InputError(f"{given} holds no model.", f"Models are {', '.join(SUFFIXES)}.")
             for item in inside:
@@ -57,6 +58,10 @@ def found_models(inputs: Iterable[str | Path]) -> Iterator[tuple[str, Path, Path
                 yield str(item), item, Path(item.name)
         else:
             raise InputError(f"{given} does not exist.", "Name a file, a folder or a pattern.")
+
+
+def _below(path: Path, folder: Path | None) -> bool:
+    return folder is not None and folder.absolute() in path.absolute().parents
 
 
 def _is_model(path: Path) -> bool:
@@ -98,32 +103,27 @@ def refuse_clashes(items: Sequence[Item]) -> None:
             )
 
 
-def key_of(item: Item) -> str:
-    """Hash of all that a part depends on: file, options, profile, version; "" without the file.
+def key_of(job: Job) -> str:
+    """Hash of all that a job's part depends on: file, options, profile, version.
 
-    The file's name counts, not its folder: it is the part's name.
+    The file's name counts, not its folder: it is the part's name.  "" where there is no file.
     """
+    from printprep.profiles import load_profile
+
     try:
-        content = sha256_of(item.job.model)
+        content = sha256_of(job.model)
     except OSError:
         return ""
-    options = plain(replace(item.job, model=Path(item.job.model.name), output=Path(), profile=""))
-    profile = _profile(item.job.profile, tuple(sorted(item.job.overrides.items())))
+    profile = load_profile(job.profile, job.overrides)
+    model, output = Path(job.model.name), Path(job.output.suffix)
+    same = replace(job, model=model, output=output, plugs=None, profile="", overrides={})
     asked = {
         "version": __version__,
         "model": content,
-        "options": {**options, "overrides": None},
+        "options": plain(same),
         "profile": profile.model_dump(mode="json"),
-        "suffix": Path(item.output).suffix,
     }
     return hashlib.sha256(json.dumps(asked, sort_keys=True, default=str).encode()).hexdigest()
-
-
-@lru_cache(maxsize=256)
-def _profile(profile: str | Path | Profile, overrides: tuple[tuple[str, object], ...]) -> Profile:
-    from printprep.profiles import load_profile
-
-    return load_profile(profile, dict(overrides))
 
 
 def sha256_of(path: Path) -> str:

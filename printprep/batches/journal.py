@@ -77,7 +77,7 @@ def rows_in(folder: Path) -> dict[str, Row]:
 
 def is_complete(item: Item, row: Row | None, folder: Path) -> bool:
     """Whether a row stands for just this item and, where there is a part, for just that file."""
-    if row is None or row.status not in FINAL or row.key != key_of(item) or not row.key:
+    if row is None or row.status not in FINAL or row.key != key_of(item.job) or not row.key:
         return False
     if row.status != "part":
         return True

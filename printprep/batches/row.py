@@ -35,7 +35,7 @@ class Row:
     name: str
     output: str
     status: Status
-    key: str
+    key: str = ""
     output_sha256: str | None = None
     code: str | None = None
     message: str | None = None

@@ -11,7 +11,6 @@ from printprep.batches.item import (
     Item,
     found_models,
     items_of,
-    key_of,
     refuse_clashes,
 )
 from printprep.batches.journal import NAME, Journal, is_complete, rows_in
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from printprep.pipeline.job import Job
+    from printprep.profiles import Profile
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,9 @@ def batch(
 
     folder, how = Path(output), run or BatchOptions()
     template = options or Job(Path(), Path())
-    planned = plan(items_of(found_models(inputs), template, folder), folder, resume=how.resume)
+    planned = plan(
+        items_of(found_models(inputs, folder), template, folder), folder, resume=how.resume
+    )
     yield from planned.kept
     yield from run_batch(planned, how, client)
 
@@ -87,7 +89,7 @@ def plan(items: Sequence[Item], folder: Path, *, resume: bool) -> Planned:
     Raises UsageError for options or names that cannot be, OutputError for a folder that refuses.
     """
     refuse_clashes(items)
-    check_jobs(items)
+    items = with_profiles(items)
     _make_folder(folder)
     if not resume:
         if (folder / NAME).exists():
@@ -106,25 +108,34 @@ def plan(items: Sequence[Item], folder: Path, *, resume: bool) -> Planned:
     )
 
 
-def check_jobs(items: Sequence[Item]) -> None:
-    """Raise the error of the first job whose options do not go together, with its model's name."""
+def with_profiles(items: Sequence[Item]) -> tuple[Item, ...]:
+    """The items with their profiles loaded and their options checked, but not their files.
+
+    A profile that is loaded travels with its job to machines that do not have its file.
+
+    Raises the error of the first job whose options do not go together, with its model's name.
+    """
     from printprep.output.limits import SUFFIXES
     from printprep.pipeline.job import check_settings
 
-    checked: set[str] = set()
+    checked: dict[str, Profile] = {}
+    loaded = []
     for item in items:
         suffix = item.job.output.suffix
         if suffix not in SUFFIXES:
-            raise UsageError(f"{suffix} is not a format that printprep writes.")
+            raise UsageError(
+                f"{suffix} is not a format that printprep writes.", f"Use {', '.join(SUFFIXES)}."
+            )
         # But for the files, most models of a batch have the same job
         options = repr(replace(item.job, model=Path(), output=Path(suffix), plugs=None))
-        if options in checked:
-            continue
-        try:
-            check_settings(item.job)
-        except PrintprepError as error:
-            raise type(error)(f"{item.name}: {error.message}", error.hint) from error
-        checked.add(options)
+        if options not in checked:
+            try:
+                checked[options] = check_settings(item.job)
+            except PrintprepError as error:
+                raise type(error)(f"{item.name}: {error.message}", error.hint) from error
+        job = replace(item.job, profile=checked[options], overrides={})
+        loaded.append(replace(item, job=job))
+    return tuple(loaded)
 
 
 def run_batch(planned: Planned, how: BatchOptions, client: Client | None = None) -> Iterator[Row]:
@@ -150,9 +161,7 @@ def run_batch(planned: Planned, how: BatchOptions, client: Client | None = None)
 
 
 def _row(item: Item, told: Told) -> Row:
-    return Row(
-        name=item.name, output=item.output, status=told.status, key=key_of(item), **told.facts
-    )
+    return Row(name=item.name, output=item.output, status=told.status, **told.facts)
 
 
 def _with_output(item: Item, told: Told, folder: Path) -> Told:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from printprep.batches.item import sha256_of
+from printprep.batches.item import key_of, sha256_of
 from printprep.batches.row import Told, failed_by, told_by
 from printprep.errors import PrintprepError
 
@@ -24,8 +24,14 @@ def run_one(job: Job) -> Told:
     """Run a job whose files this process reaches; never raises but for what ends the process."""
     _forget_peak()
     start = time.perf_counter()
+    key = key_of(job)  # of the file as it is now
     told = _run(job)
-    facts = {**told.facts, "seconds": round(time.perf_counter() - start, 3), "peak_mib": peak_mib()}
+    facts = {
+        **told.facts,
+        "key": key,
+        "seconds": round(time.perf_counter() - start, 3),
+        "peak_mib": peak_mib(),
+    }
     return replace(told, facts=facts)
 
 

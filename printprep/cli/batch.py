@@ -136,5 +136,5 @@ def _items(
         if Path(given).suffix.lower() == ".csv":
             items += items_in(Path(given), options, folder, suffix, fail_on)
         else:
-            items += items_of(found_models([given]), template, folder, suffix)
+            items += items_of(found_models([given], folder), template, folder, suffix)
     return items

@@ -9,7 +9,9 @@ import pytest
 from batch_workers import QUICK, models
 
 from printprep.batches.item import found_models, item_of, items_of, key_of, refuse_clashes
+from printprep.batches.run import with_profiles
 from printprep.errors import InputError, UsageError
+from printprep.profiles import load_profile
 
 
 def outputs(inputs, folder: Path) -> list[str]:
@@ -54,15 +56,30 @@ def test_the_key_changes_with_all_that_the_part_depends_on(tmp_path, monkeypatch
     (path,) = models(tmp_path, "m.stl")
     item = item_of(replace(QUICK, model=path), "m", Path("m.stl"), tmp_path / "out")
     elsewhere = item_of(replace(QUICK, model=path), "other", Path("x/m.stl"), tmp_path / "away")
-    assert key_of(item) == key_of(elsewhere) != ""
+    assert key_of(item.job) == key_of(elsewhere.job) != ""
     wall = replace(item, job=replace(item.job, overrides={"wall_mm": 2.0}))
     lean = replace(item, job=replace(item.job, options=replace(item.job.options, lean="15")))
     resin = replace(item, job=replace(item.job, profile="resin-standard"))
-    keys = {key_of(each) for each in (item, wall, lean, resin)}
+    keys = {key_of(each.job) for each in (item, wall, lean, resin)}
     monkeypatch.setattr("printprep.batches.item.__version__", "9.9")
-    keys.add(key_of(item))
+    keys.add(key_of(item.job))
     path.write_bytes(path.read_bytes() + b" ")
-    keys.add(key_of(item))
+    keys.add(key_of(item.job))
     assert len(keys) == 6
     path.unlink()
-    assert key_of(item) == ""
+    assert key_of(item.job) == ""
+
+
+def test_parts_that_lie_among_the_models_are_no_models(tmp_path):
+    models(tmp_path, "a.stl", "out/a.stl")
+    found = found_models([tmp_path], tmp_path / "out")
+    assert [place.as_posix() for _, _, place in found] == ["a.stl"]
+
+
+def test_a_loaded_profile_travels_with_the_job_and_changes_nothing(tmp_path):
+    models(tmp_path, "a.stl")
+    job = replace(QUICK, overrides={"wall_mm": 2.0})
+    (item,) = items_of(found_models([tmp_path]), job, tmp_path / "out")
+    (loaded,) = with_profiles([item])
+    assert loaded.job.profile == load_profile("fdm-pla-0.4", {"wall_mm": 2.0})
+    assert key_of(loaded.job) == key_of(item.job)

@@ -77,7 +77,7 @@ def test_what_crashed_is_tried_again(tmp_path):
 
     for status, left in (("crashed", 1), ("timeout", 1), ("memory", 1), ("stopped", 0)):
         with Journal(tmp_path / "out") as journal:
-            journal.append(Row("a", item.output, status, key_of(item)))
+            journal.append(Row("a", item.output, status, key_of(item.job)))
         assert len(plan([item], tmp_path / "out", resume=True).left) == left
 
 
