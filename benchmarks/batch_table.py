@@ -1,12 +1,14 @@
 """Batches on this machine and on a real Dask scheduler, measured: what is lost, what it costs.
 
     python benchmarks/batch_table.py models ../shared/models/catalogue.csv -w /tmp/batches
+    python benchmarks/batch_table.py rate ../shared/models/catalogue.csv -w /tmp/batches
     python benchmarks/batch_table.py tiny -w /tmp/batches
 
 ``models`` runs the dev set in several sizes and leans, ten bad files among them: one at a time,
 then on a scheduler with two worker processes of which one is killed midway, then once more with
---resume; it compares every part with the one made alone.  ``tiny`` runs many cubes and shows what a
-job costs beside the work, and that it does not grow with their number.
+--resume; it compares every part with the one made alone.  ``rate`` compares models a minute.
+``tiny`` runs many cubes and shows what a job costs beside the work, and that it does not grow with
+their number.
 """
 
 from __future__ import annotations
@@ -42,7 +44,7 @@ BAD = (
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("what", choices=("models", "tiny"))
+    parser.add_argument("what", choices=("models", "rate", "tiny"))
     parser.add_argument("catalogue", type=Path, nargs="?", help="of the models")
     parser.add_argument("-w", "--work", type=Path, required=True, help="a folder of its own")
     parser.add_argument("--count", type=int, help="models, or cubes")
@@ -51,6 +53,10 @@ def main() -> int:
     arguments.work.mkdir(parents=True, exist_ok=True)
     if arguments.what == "tiny":
         return tiny(arguments.work, arguments.count or 2000)
+    if arguments.what == "rate":
+        return rate(
+            arguments.catalogue, arguments.work, arguments.count or 50, arguments.resolution
+        )
     return models(arguments.catalogue, arguments.work, arguments.count or 200, arguments.resolution)
 
 
@@ -78,19 +84,37 @@ def models(table: Path, work: Path, count: int, resolution: int) -> int:
     same = sum(sha256_of(alone / r.output) == sha256_of(there / r.output) for r in parts(ended))
     print(f"parts the same to the byte: {same} of {len(parts(rows))}")
     print(f"peak memory of a job: {max(row.peak_mib or 0 for row in ended):.0f} MiB")
-    some = items[:: max(1, len(items) // 40)]
-    with cluster(work / "dask2") as found, connect(found.address) as client:
-        for name, workers, where in (("one at a time", 1, None), ("two local", 2, None),
-                                     ("two on Dask", 2, client)):  # fmt: skip
-            folder = work / name.replace(" ", "-")
-            mine = [replace(i, job=replace(i.job, output=folder / i.output)) for i in some]
-            seconds, done = timed(mine, folder, BatchOptions(workers=workers), where)
-            busy = sum(row.seconds or 0 for row in done)
-            rate = 60 * len(some) / seconds
-            print(
-                f"{len(some)} models, {name}: {seconds:.1f} s, {rate:.1f} a minute, work {busy:.1f}"
-            )
     return 1 if lost or twice or again.left or same != len(parts(rows)) else 0
+
+
+def rate(table: Path, work: Path, count: int, resolution: int) -> int:
+    """Models a minute: one at a time on one core and on all, two workers here and on Dask."""
+    items = items_for(table, work, count, resolution)
+    cores = os.cpu_count() or 1
+    ways = (("one core", 1, False), ("all cores", 1, False), ("two local", 2, False),
+            ("two on Dask", 2, True))  # fmt: skip
+    print("| one at a time, or two workers | s | models a minute | the jobs' own seconds |")
+    print("|---|---|---|---|")
+    with cluster(work / "dask") as found, connect(found.address) as client:
+        client.run(_warm)
+        for name, workers, there in ways:
+            folder = work / name.replace(" ", "-")
+            mine = [replace(i, job=replace(i.job, output=folder / i.output)) for i in items]
+            if name == "one core":
+                bind(0, cores)
+            how = BatchOptions(workers=workers)
+            seconds, done = timed(mine, folder, how, client if there else None)
+            if name == "one core":
+                os.sched_setaffinity(0, range(cores))
+            busy = sum(row.seconds or 0 for row in done)
+            print(f"| {name} | {seconds:.1f} | {60 * len(items) / seconds:.1f} | {busy:.1f} |")
+    return 0
+
+
+def _warm() -> None:
+    """Import in a worker what its first job would."""
+    import printprep.pipeline.hollow
+    import printprep.supports  # noqa: F401
 
 
 def tiny(work: Path, count: int) -> int:
@@ -107,9 +131,10 @@ def tiny(work: Path, count: int) -> int:
     print("| cubes | where | s | jobs' own s | beside them, ms a job |")
     print("|---|---|---|---|---|")
     with cluster(work / "dask-tiny") as found, connect(found.address) as client:
-        for number, (where, how) in itertools.product(
+        rounds = itertools.product(
             (count // 20, count // 4, count), (("local", None), ("Dask", client))
-        ):
+        )
+        for number, (where, how) in rounds:
             out = work / f"out-{where}-{number}-{os.getpid()}"
             items = [
                 item_of(replace(job, model=folder / f"c{k}.stl"), f"c{k}", Path(f"c{k}.stl"), out)
