@@ -35,6 +35,7 @@ from printprep.batches.run import BatchOptions, plan, run_batch
 from printprep.mesh.write import to_bytes
 from printprep.pipeline.job import Job
 from printprep.pipeline.options import FillOptions, Placement
+from printprep.processors import bind
 
 BAD = (
     b"", b"hello", b"solid x\nfacet", b"\x00" * 84, b"\xff" * 200, b"PK\x03\x04",
