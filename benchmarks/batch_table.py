@@ -106,7 +106,8 @@ def rate(table: Path, work: Path, count: int, resolution: int) -> int:
             how = BatchOptions(workers=workers)
             seconds, done = timed(mine, folder, how, client if there else None)
             if name == "one core":
-                os.sched_setaffinity(0, range(cores))
+                for task in Path("/proc/self/task").iterdir():
+                    os.sched_setaffinity(int(task.name), range(cores))
             busy = sum(row.seconds or 0 for row in done)
             print(f"| {name} | {seconds:.1f} | {60 * len(items) / seconds:.1f} | {busy:.1f} |")
     return 0
