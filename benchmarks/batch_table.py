@@ -133,10 +133,12 @@ def tiny(work: Path, count: int) -> int:
     print("| cubes | where | s | jobs' own s | beside them, ms a job |")
     print("|---|---|---|---|---|")
     with cluster(work / "dask-tiny") as found, connect(found.address) as client:
-        rounds = itertools.product(
-            (count // 20, count // 4, count), (("local", None), ("Dask", client))
+        few, some = count // 20, count // 4
+        rounds = (
+            *((number, "local", None) for number in (few, some)),
+            *((number, "Dask", client) for number in (few, some, count)),
         )
-        for number, (where, how) in rounds:
+        for number, where, how in rounds:
             out = work / f"out-{where}-{number}-{os.getpid()}"
             items = [
                 item_of(replace(job, model=folder / f"c{k}.stl"), f"c{k}", Path(f"c{k}.stl"), out)
