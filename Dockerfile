@@ -19,6 +19,7 @@ RUN pip install --no-cache-dir torch==2.13.0+cpu --extra-index-url https://downl
 
 # One thread a library in each process: a worker runs one model at a time, and there is one a core
 ENV OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
-    DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=2
+    DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=2 \
+    DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED=False
 WORKDIR /data
 CMD ["printprep", "--help"]

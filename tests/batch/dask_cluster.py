@@ -52,6 +52,7 @@ def cluster(folder: Path, workers: int = 2, allowed_failures: int = 2) -> Iterat
         **os.environ,
         "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(allowed_failures),
         "DASK_DISTRIBUTED__WORKER__MEMORY__TERMINATE": "False",
+        "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
         "PYTHONPATH": os.pathsep.join([*sys.path]),
     }
 
