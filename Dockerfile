@@ -17,9 +17,10 @@ COPY profiles profiles
 RUN pip install --no-cache-dir torch==2.13.0+cpu --extra-index-url https://download.pytorch.org/whl/cpu \
  && pip install --no-cache-dir '.[cluster]'
 
-# One thread a library in each process: a worker runs one model at a time, and there is one a core
+# One thread a library in each process: a worker runs one model at a time, and there is one a core.
+# The last two put glibc's limits back, which Dask lowers: see docs/cluster.md
 ENV OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
     DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=2 \
-    DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED=False
+    MALLOC_TRIM_THRESHOLD_=67108864 MALLOC_MMAP_THRESHOLD_=33554432
 WORKDIR /data
 CMD ["printprep", "--help"]

@@ -52,7 +52,8 @@ def cluster(folder: Path, workers: int = 2, allowed_failures: int = 2) -> Iterat
         **os.environ,
         "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(allowed_failures),
         "DASK_DISTRIBUTED__WORKER__MEMORY__TERMINATE": "False",
-        "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+        "MALLOC_TRIM_THRESHOLD_": "67108864",
+        "MALLOC_MMAP_THRESHOLD_": "33554432",
         "PYTHONPATH": os.pathsep.join([*sys.path]),
     }
 
