@@ -91,16 +91,23 @@ def item_of(job: Job, name: str, place: Path, folder: Path, suffix: str = ".3mf"
     return Item(name, replace(job, output=folder / output), output.as_posix())
 
 
+def with_plugs(item: Item) -> Item:
+    """The item with plugs for its part's drain holes written beside it."""
+    plugs = item.job.output.with_name(f"{item.job.output.stem}-plugs.3mf")
+    return replace(item, job=replace(item.job, plugs=plugs))
+
+
 def refuse_clashes(items: Sequence[Item]) -> None:
     """Raise UsageError where two parts would be one file, on a system that ignores case too."""
     seen: dict[str, Item] = {}
     for item in items:
-        other = seen.setdefault(item.output.casefold(), item)
-        if other is not item:
-            raise UsageError(
-                f"{other.name} and {item.name} would both be written as {item.output}.",
-                "Rename one, or give their folder instead: its structure is kept.",
-            )
+        for path in (item.job.output, item.job.plugs):
+            other = item if path is None else seen.setdefault(str(path).casefold(), item)
+            if other is not item:
+                raise UsageError(
+                    f"{other.name} and {item.name} would both be written as {path}.",
+                    "Rename one, or give their folder instead: its structure is kept.",
+                )
 
 
 def key_of(job: Job) -> str:

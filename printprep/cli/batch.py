@@ -9,6 +9,7 @@ import click
 
 from printprep.cli.options import fail_on_option, json_option, quiet_option
 from printprep.cli.part_options import job_of, part_options
+from printprep.errors import UsageError
 
 if TYPE_CHECKING:
     from printprep.batches.item import Item
@@ -48,6 +49,11 @@ A CSV has a column `file`, and any option above as a column:
     help="Format of the parts; 3mf carries the print settings.",
 )
 @part_options
+@click.option(
+    "--plugs",
+    is_flag=True,
+    help="Also write plugs for the drain holes of each part, as PART-plugs.3mf.",
+)
 @click.option(
     "--jobs",
     "workers",
@@ -92,6 +98,7 @@ def command(
     inputs: tuple[str, ...],
     output: Path,
     suffix: str,
+    plugs: bool,
     workers: int | None,
     memory_mib: float | None,
     timeout_s: float | None,
@@ -110,11 +117,18 @@ def command(
     starts. The exit code is 0 if every row is a part, else 1.
     """
     from printprep.batches.cluster import connect
+    from printprep.batches.item import with_plugs
     from printprep.batches.run import BatchOptions, plan, run_batch
     from printprep.batches.summary import write_summary
     from printprep.report.batch import follow
 
+    if plugs and transfer:
+        raise UsageError(
+            "--transfer brings back parts, not plugs.", "Leave out --plugs, or use a shared folder."
+        )
     items = _items(inputs, options, output, f".{suffix}", fail_on)
+    if plugs:
+        items = [with_plugs(item) for item in items]
     how = BatchOptions(workers, memory_mib, timeout_s, resume, transfer)
     client = None if scheduler is None else connect(scheduler)
     planned: Planned = plan(items, output, resume=resume)

@@ -149,3 +149,23 @@ def test_a_model_that_vanishes_is_its_row(two_workers: Cluster, tmp_path):
         rows = {row.output: row for row in run_batch(planned, BatchOptions(transfer=True), client)}
     assert (rows["a.3mf"].status, rows["b.3mf"].status) == ("error", "part")
     assert "a.stl" in (rows["a.3mf"].message or "")
+
+
+def test_a_model_that_kills_every_worker_is_a_crashed_row():
+    """What the scheduler says of a task after as many deaths as it allows."""
+    from distributed import Future, KilledWorker
+
+    from printprep.batches.cluster import _told
+
+    class Killed(Future):
+        def __init__(self) -> None:
+            pass
+
+        def __del__(self) -> None:
+            pass
+
+        def result(self, timeout: float | None = None) -> None:
+            raise KilledWorker("task", None, 2)
+
+    told = _told(Killed())
+    assert (told.status, told.facts["code"]) == ("crashed", "crashed")

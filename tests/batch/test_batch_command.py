@@ -126,6 +126,16 @@ def test_a_part_that_reaches_fail_on_is_a_row_and_not_a_file(tmp_path, capsys, m
     assert not Path("out/a.3mf").exists()
 
 
+def test_plugs_are_written_beside_each_part(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    models(tmp_path, "a.stl", size=25.0)
+    line = ["batch", "a.stl", "-o", "out", "-p", "resin-standard", "--resolution", "16"]
+    assert run([*line, "--jobs", "1", "--plugs"]) == 0
+    assert Path("out/a.3mf").is_file() and Path("out/a-plugs.3mf").is_file()
+    assert run([*line, "--plugs", "--transfer", "--resume"]) == 2
+    assert "not plugs" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("line", "code", "words"),
     [
@@ -136,6 +146,7 @@ def test_a_part_that_reaches_fail_on_is_a_row_and_not_a_file(tmp_path, capsys, m
         ("batch a.stl -o out --wall -3", 2, "wall_mm"),
         ("batch a.stl -o out --format stl --fill infill", 2, "cannot carry infill"),
         ("batch a.stl -o out --jobs 0", 2, "--jobs"),
+        ("batch a.stl -o out --plugs", 2, "no effect"),
         ("batch a.stl -o a.stl", 5, "folder"),
         ("batch a.stl -o out --scheduler tcp://127.0.0.1:9", 6, "No scheduler answers"),
     ],
