@@ -37,6 +37,7 @@ class CheckContext:
     reachable_deg : the largest lean any filling reaches, None where the requested lean is feasible.
     advice : what would make the lean feasible; it comes with ``reachable_deg``.
     drainage : how the part drains, None where no drains were requested.
+    blocker : where the file forbids a slicer's supports, None if it does not.
     raw : the triangles of a file as read and placed; None for a part that printprep made.
 
     What several rules need is measured once.
@@ -53,6 +54,7 @@ class CheckContext:
     reachable_deg: float | None = None
     advice: Advice | None = None
     drainage: Drainage | None = None
+    blocker: Manifold | None = None
     raw: Model | None = None
 
     @property

@@ -16,10 +16,10 @@ from printprep.cli.options import (
     placement_options,
     profile_options,
     resolution_option,
-    self_support_option,
     severity_of,
     slicer_option,
     together,
+    vaults_option,
 )
 from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
 from printprep.output.manual_settings import SLICERS
@@ -94,7 +94,7 @@ def part_options(command: Command) -> Command:
             help="Also slice the part with PrusaSlicer and measure the G-code, like "
             "`printprep verify`.",
         ),
-        self_support_option,
+        vaults_option,
         click.option(
             "--drains",
             "drain_count",
@@ -152,7 +152,7 @@ def job_of(
             objective=given["objective"],
             solver=Solver(given["solver_name"], given["device"]),
             base=given["base"],
-            self_support=given["self_support"],
+            vaults=given["vaults"],
             slicer=given["slicer"],
         ),
         written_for=given["written_for"],

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Advice, AlternativeFill, Finding, Lean
+    from printprep.types import Advice, AlternativeFill, Finding, Lean, VaultChoice
 
 
 def hollow_with(
@@ -73,7 +73,7 @@ def hollow(
     solver: str = PLANE,
     device: str = "cpu",
     base: BasePolicy = "auto",
-    self_support: bool | None = None,
+    vaults: VaultChoice | None = None,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
     fill: str = "cavity",
@@ -99,7 +99,9 @@ def hollow(
         as in the paper, on a torch ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet: "auto" (where that saves material),
         "never", "always".
-    self_support : whether vaults carry the ceilings of cavities; None: if the process needs them.
+    vaults : whose overhang rule the vaults keep that carry the ceilings of cavities: "printer",
+        "slicer", or "none" for no vaults.  None takes the printer's if the process needs vaults.
+        Such a part is written as a 3MF for PrusaSlicer, with a support blocker.
     drains : least number of drain holes in each cavity, 0 for none;  drain_diameter_mm : their
         diameter.  None takes the profile's.
     fill : a name in :data:`printprep.pipeline.fills.FILLS`: "cavity", or "infill", the profile's
@@ -122,7 +124,7 @@ def hollow(
         objective=objective,
         solver=Solver(solver, device),
         base=base,
-        self_support=self_support,
+        vaults=vaults,
         slicer=slicer,
     )
     return hollow_with(model, settings, placement, options, progress)
@@ -169,6 +171,7 @@ def context_of(
         reachable_deg=filled.density.reachable_deg,
         advice=advice,
         drainage=filled.drainage,
+        blocker=filled.blocker,
     )
 
 
@@ -201,6 +204,7 @@ def result_of(
         findings=findings,
         advice=context.advice,
         supports=filled.supports,
+        blocker=filled.blocker,
         drainage=filled.drainage,
         infill=filled.infill,
         alternative_fill=alternative,

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from printprep.density.program import BasePolicy
-    from printprep.types import Lean
+    from printprep.types import Lean, VaultChoice
 
 FINEST, COARSEST = 512, 8  # voxels along the longest side
 
@@ -49,7 +49,10 @@ class FillOptions:
     resolution : voxels along the longest side.
     objective, solver : a name in :data:`printprep.objectives.OBJECTIVES`, and how it is solved.
     base : whether material may be added around the feet.
-    self_support : whether vaults carry ceilings; None: if ceilings sag in the profile's process.
+    vaults : whose overhang rule the vaults keep that carry ceilings: "printer", which counts on a
+        support blocker in the file, or "slicer"; "none" for no vaults.  None takes the printer's
+        where ceilings sag in the profile's process, and the slicer's where the file that is written
+        cannot carry a blocker.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
     """
@@ -60,7 +63,7 @@ class FillOptions:
     objective: str = DEFAULT_OBJECTIVE
     solver: Solver = field(default_factory=Solver)
     base: BasePolicy = "auto"
-    self_support: bool | None = None
+    vaults: VaultChoice | None = None
     slicer: Path | None = None
 
 
