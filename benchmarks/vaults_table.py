@@ -10,7 +10,8 @@ word on the written part, at layer phases that the building does not all use.
 Every slicer prints the part three ways in the same settings: as it is, and the model with walls as
 thick and 15 % gyroid or lightning.  Then it slices the part with supports on, in every style that
 it has, at the automatic threshold and at 45°: support inside the cavities, and support outside
-beside that of the same part without cavities and without a support blocker.  The file of --json keeps the rows, and later runs go on there.
+beside that of the same part without cavities and without a support blocker.  The file of --json
+keeps the rows, and later runs go on there.
 """
 
 from __future__ import annotations
