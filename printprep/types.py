@@ -21,6 +21,56 @@ SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a fil
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
+@dataclass(frozen=True)
+class ReadNote:
+    """What a reader changed, left out or could not tell, so that the user knows what was read.
+
+    kind : "facet-count", the file's own count of its facets is wrong;  "cut-short", the rest of the
+    file is missing;  "left-out", parts of a project that are not the model's shape;  "subtracted",
+    negative volumes;  "colours-lost", colours or paint that no part carries.
+    """
+
+    kind: Literal["facet-count", "cut-short", "left-out", "subtracted", "colours-lost"]
+    message: str
+    fix: str | None = None
+
+
+@dataclass(frozen=True)
+class Material:
+    """A material of a 3MF: its name, and its colour as "#RRGGBB" or "#RRGGBBAA"."""
+
+    name: str
+    colour: str
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one triangle is coloured and painted.
+
+    material : None where the file names none.
+    strokes : pairs of what is painted ("colour", "supports", "seam", "fuzzy") and the slicers'
+    code of it, the same in PrusaSlicer, BambuStudio and OrcaSlicer: hexadecimal digits, the last
+    first, that say how the triangle is split and what each piece is.
+    """
+
+    material: Material | None = None
+    strokes: tuple[tuple[str, str], ...] = ()
+
+
+PLAIN = Style()
+
+
+@dataclass(frozen=True, eq=False)
+class Paint:
+    """The colours and the paint of a mesh.
+
+    styles : the first one is ``PLAIN``;  labels : (m,) int32, the style of each face.
+    """
+
+    styles: tuple[Style, ...]
+    labels: Int
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """The triangles of the input, welded, in mm, z up, on the bed, centred on x = y = 0.
@@ -28,12 +78,15 @@ class Model:
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64, counter-clockwise seen from outside.
     placement : (4, 4) float64, file coordinates → these coordinates.
     name : the file's stem, never a path.
+    notes : what the reader has to say;  paint : colours of the faces, None where there are none.
     """
 
     vertices: Float
     faces: Int
     placement: Float
     name: str
+    notes: tuple[ReadNote, ...] = ()
+    paint: Paint | None = None
 
 
 @dataclass(frozen=True)

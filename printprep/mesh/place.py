@@ -74,6 +74,8 @@ def place(
         faces=raw.faces,
         placement=step @ raw.from_file,
         name=raw.name,
+        notes=raw.notes,
+        paint=raw.paint,
     )
 
 

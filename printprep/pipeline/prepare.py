@@ -57,13 +57,18 @@ def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_
     from printprep.generators.model import read_model
     from printprep.generators.read import SUFFIXES as VOXEL_SUFFIXES
     from printprep.mesh.place import place
-    from printprep.mesh.read import from_trimesh, read_mesh
+    from printprep.mesh.read import Choice, from_trimesh, read_mesh, refuse_parts
 
+    choice = Choice(placement.units, placement.partial, placement.plate, placement.item)
     if isinstance(model, str | Path):
         path = Path(model)
-        voxels = path.suffix.lower() in VOXEL_SUFFIXES
-        raw = read_model(path) if voxels else read_mesh(path, placement.units)
+        if path.suffix.lower() in VOXEL_SUFFIXES:
+            refuse_parts(choice, str(path))
+            raw = read_model(path)
+        else:
+            raw = read_mesh(path, choice=choice)
     else:
+        refuse_parts(choice, "a mesh in memory")
         raw = from_trimesh(model, units=placement.units)
     return place(
         raw,
