@@ -64,7 +64,7 @@ PLAIN = Style()
 class Paint:
     """The colours and the paint of a mesh.
 
-    styles : the first one is ``PLAIN``;  labels : (m,) int32, the style of each face.
+    styles : the first one is ``PLAIN``;  labels : (m,) the style of each face.
     """
 
     styles: tuple[Style, ...]

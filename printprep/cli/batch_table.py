@@ -17,11 +17,14 @@ import click
 from printprep.batches.item import SUFFIXES, Item, item_of
 from printprep.cli.part_options import job_of, part_options
 from printprep.errors import InputError, UsageError
+from printprep.files import check_plain_file
+from printprep.wording import shortened
 
 FILE, OUTPUT = "file", "output"
 _YES, _NO = ("yes", "true", "1"), ("no", "false", "0")
 # A table is text that a person made: a million models are a file of a few hundred megabytes.
 MOST_ROWS = 1_000_000
+_TABLE_BYTES_MAX = 256 << 20
 
 
 def items_in(
@@ -51,10 +54,11 @@ def items_in(
 
 def _rows(table: Path) -> Iterator[tuple[int, dict[str, str]]]:
     """Each row with its line; columns by option name without dashes."""
+    check_plain_file(table, _TABLE_BYTES_MAX)
     try:
         with table.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.DictReader(file)
-            columns = [name.strip().lstrip("-") for name in reader.fieldnames or ()]
+            columns = [(name or "").strip().lstrip("-") for name in reader.fieldnames or ()]
             _check_columns(table, columns)
             for count, row in enumerate(reader):
                 if count >= MOST_ROWS:
@@ -65,6 +69,11 @@ def _rows(table: Path) -> Iterator[tuple[int, dict[str, str]]]:
                         "Quote cells that hold commas.",
                     )
                 cells = [(value or "").strip() for value in row.values()]
+                if any("\0" in cell for cell in cells):
+                    raise InputError(
+                        f"{table}: line {reader.line_num}: a cell holds a zero character.",
+                        "Save the table as text in UTF-8.",
+                    )
                 if any(cells):
                     yield reader.line_num, dict(zip(columns, cells, strict=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -99,8 +108,12 @@ def _item(
     if not name:
         raise UsageError("the column file is empty.")
     model = table.parent / name
-    if not model.is_file():
-        raise InputError(f"the file {name} does not exist.")
+    try:
+        there = model.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        there = False
+    if not there:
+        raise InputError(f"the file {shortened(name, 200)} does not exist.")
     cells = {key: cell for key, cell in row.items() if cell and key not in (FILE, OUTPUT)}
     words = [word for key, cell in cells.items() for word in _words(key, cell)]
     context = _ROW.make_context("row", words, default_map=dict(given))

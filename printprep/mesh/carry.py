@@ -41,7 +41,7 @@ _SAMPLES = np.array(
 class Carried:
     """The paint of a part.
 
-    labels : (m,) int32 into ``styles``;  turns : (m,) by how many corners each face must be turned
+    labels : (m,) into ``styles``;  turns : (m,) by how many corners each face must be turned
     so that it begins as the model's facet does (for codes that split it).
     lost_mm2, painted_mm2 : painted area of the model's outside that is not carried as it was, and
     all of it.
@@ -80,7 +80,7 @@ def carried(
     side = np.einsum("fsx,fx->fs", normals[nearest].reshape(*points.shape), to_normals)
     away = np.sqrt(np.maximum(squared, 0)).reshape(side.shape)
     on = (away <= _ON_MM + slack_mm) & ((side >= _SAME_SIDE) | (slack_mm > 0) & (side > 0))
-    found = np.where(on, paint.labels[nearest].reshape(side.shape), 0).astype(np.int32)
+    found = np.where(on, paint.labels[nearest].reshape(side.shape), 0)
     labels, pure = _most(found)
     turns = np.zeros(len(to_faces), dtype=np.int64)
     styles = list(paint.styles)
@@ -110,7 +110,7 @@ def _most(found: Int) -> tuple[Int, Bool]:
         count = (found == ordered[:, column : column + 1]).sum(axis=1)
         better = count > most
         best[better], most[better] = ordered[better, column], count[better]
-    return best.astype(np.int32), most == found.shape[1]
+    return best, most == found.shape[1]
 
 
 def _is_split(style: Style) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,7 +68,7 @@ def read_obj(data: bytes, what: str) -> ObjMesh:
             named = _corners(words, len(coordinates) // 3, what, number)
             faces_before.append(len(corners) // 3)
             lines.append(number)
-            for b, c in zip(named[1:], named[2:], strict=False):
+            for b, c in pairwise(named[1:]):
                 corners.extend((named[0], b, c))
             if len(corners) > 3 * TRIANGLES_MAX:
                 refuse_too_many(len(corners) // 3, f"{what} up to line {number}")

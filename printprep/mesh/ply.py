@@ -82,7 +82,7 @@ class PlyMesh:
     notes: tuple[ReadNote, ...] = ()
 
 
-class _End(Exception):
+class _EndError(Exception):
     """The file ends before a row is whole."""
 
 
@@ -189,7 +189,7 @@ def _vertices(rows: _Text | _Binary, element: _Element, what: str) -> Float:
         raise ValueError("its vertices have no x, y and z")
     try:
         return rows.columns(element, ("x", "y", "z"))
-    except _End:
+    except _EndError:
         raise InputError(
             f"{what} is cut short: its header promises {element.count} vertices, and they are not "
             "all there.",
@@ -261,13 +261,13 @@ class _Text:
                 if "_" in line:
                     raise ValueError(f"a row holds no numbers: {shortened(line)}")
                 return words
-        raise _End
+        raise _EndError
 
     def skip(self, element: _Element) -> None:
         try:
             for _ in range(element.count):
                 self._row()
-        except _End:
+        except _EndError:
             return
 
     def columns(self, element: _Element, names: tuple[str, ...]) -> Float:
@@ -278,7 +278,7 @@ class _Text:
             words = self._row()
             row = words if simple else [word for (word, *_) in _split(words, element)]
             if max(index) >= len(row):
-                raise _End
+                raise _EndError
             found.append(tuple(float(row[place]) for place in index))
         return np.array(found, dtype=np.float64).reshape(-1, len(names))
 
@@ -289,7 +289,7 @@ class _Text:
         for _ in range(element.count):
             try:
                 face = [int(word) for word in _split(self._row(), element)[place]]
-            except _End:
+            except _EndError:
                 break
             if kept and len(kept[0]) != len(face):
                 yield np.array(kept, dtype=np.int64)
@@ -300,7 +300,7 @@ class _Text:
 
 
 def _split(words: list[str], element: _Element) -> list[list[str]]:
-    """The words of a row, those of each property.  Raises _End where there are too few."""
+    """The words of a row, those of each property.  Raises _EndError where there are too few."""
     found: list[list[str]] = []
     at = 0
     for item in element.properties:
@@ -309,9 +309,9 @@ def _split(words: list[str], element: _Element) -> list[list[str]]:
         elif at < len(words):
             length, at = int(words[at]), at + 1
         else:
-            raise _End
+            raise _EndError
         if length < 0 or at + length > len(words):
-            raise _End
+            raise _EndError
         found.append(words[at : at + length])
         at += length
     return found
@@ -348,7 +348,7 @@ class _Binary:
         rows = self._alike(element)
         if rows is None or len(rows) < element.count:
             if not element.lists:
-                raise _End
+                raise _EndError
             raise ValueError("its vertices hold lists")
         self._at += rows.nbytes
         return np.stack([rows[f"value{place}"] for place in index], axis=1).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Text of mesh files: decoding with any byte-order mark, lines of bounded length, strict numbers."""
+"""Text of mesh files: any byte-order mark, lines of bounded length, strict numbers."""
 
 from __future__ import annotations
 

@@ -374,9 +374,8 @@ def _attribute(element: str, attributes: dict[str, str], key: str) -> str:
 def _reference(element: str, attributes: dict[str, str]) -> ObjectReference:
     text = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0")
     try:
-        numbers = (
-            [] if "_" in text or not text.isascii() else [float(w) for w in text.split(None, 12)]
-        )
+        plain = text.isascii() and "_" not in text  # Python would take 2_0 for 20
+        numbers = [float(word) for word in text.split(None, 12)] if plain else []
     except ValueError:
         numbers = []
     if len(numbers) != 12 or not all(math.isfinite(number) for number in numbers):

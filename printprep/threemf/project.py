@@ -175,15 +175,13 @@ def _ignored(archive: Archive, hollowed: int) -> Iterator[str]:
     if hollowed:
         yield "its own hollowing"
     for part, what in (
-        (_DRAIN_HOLES_PART, "drain holes"),
-        (_SUPPORT_POINTS_PART, "support points"),
+        (_DRAIN_HOLES_PART, "its drain holes"),
+        (_SUPPORT_POINTS_PART, "its support points"),
     ):
         if part in archive:
             lines = archive.read(part).decode("utf-8", "replace").splitlines()
-            if any(
-                line.startswith("object_id") and line.partition("|")[2].strip() for line in lines
-            ):
-                yield f"its {what}"
+            if any(line[:9] == "object_id" and line.partition("|")[2].strip() for line in lines):
+                yield what
 
 
 @dataclass(frozen=True)

@@ -27,14 +27,15 @@ class StyleBook:
         self._textures = self._gradients = self._too_many = False
 
     def labels(self, model: ParsedModel, found: ParsedObject, count: int) -> Int:
-        """(count,) int32, the style of each triangle of an object."""
+        """(count,), the style of each triangle of an object."""
         self._too_many = self._too_many or model.styles_lost
         numbers = [
             self._number(self._style(model, found.own, style)) for style in found.styles
         ]  # in the order of their numbers
         own = np.zeros(count, dtype=np.int32)
         own[: len(found.labels)] = found.labels
-        return np.array(numbers, dtype=np.int32)[own]
+        resolved: Int = np.array(numbers, dtype=np.int64)[own]
+        return resolved
 
     def paint(self, labels: Sequence[Int]) -> Paint | None:
         """The paint of meshes with these labels, (m,) each; None where nothing is painted."""
