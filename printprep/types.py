@@ -56,6 +56,17 @@ class Style:
     material: Material | None = None
     strokes: tuple[tuple[str, str], ...] = ()
 
+    @property
+    def splits(self) -> bool:
+        """Whether a code splits its triangle: the lowest two bits of its last digit say how."""
+        return self.whole != self
+
+    @property
+    def whole(self) -> Style:
+        """The style without the codes that split its triangle."""
+        whole = tuple(stroke for stroke in self.strokes if not int(stroke[1][-1], 16) & 3)
+        return self if len(whole) == len(self.strokes) else Style(self.material, whole)
+
 
 PLAIN = Style()
 

@@ -41,7 +41,7 @@ _SAMPLES = np.array(
 class Carried:
     """The paint of a part.
 
-    labels : (m,) into ``styles``;  turns : (m,) by how many corners each face must be turned
+    styles : of its faces;  labels : (m,) into ``styles``;  turns : (m,) by how many corners each face must be turned
     so that it begins as the model's facet does (for codes that split it).
     lost_mm2, painted_mm2 : painted area of the model's outside that is not carried as it was, and
     all of it.
@@ -84,7 +84,7 @@ def carried(
     labels, pure = _most(found)
     turns = np.zeros(len(to_faces), dtype=np.int64)
     styles = list(paint.styles)
-    split = np.array([_is_split(style) for style in styles])
+    split = np.array([style.splits for style in styles])
     if split.any():
         middle = vertices[faces[nearest.reshape(side.shape)[:, 0]]]
         labels, turns, kept = _whole_only(split, styles, labels, corners, middle)
@@ -113,15 +113,6 @@ def _most(found: Int) -> tuple[Int, Bool]:
     return best, most == found.shape[1]
 
 
-def _is_split(style: Style) -> bool:
-    return any(_splits(code) for _, code in style.strokes)
-
-
-def _splits(code: str) -> bool:
-    """Whether a code splits its triangle: the lowest two bits of its last digit say how often."""
-    return bool(int(code[-1], 16) & 3)
-
-
 def _whole_only(
     split: Bool, styles: list[Style], labels: Int, corners: Float, of_model: Float
 ) -> tuple[Int, Int, Bool]:
@@ -142,9 +133,7 @@ def _whole_only(
         if same[turn, face] <= _ON_MM:
             turns[face] = turn
             continue
-        style = styles[labels[face]]
-        strokes = tuple((kind, code) for kind, code in style.strokes if not _splits(code))
-        rest = Style(style.material, strokes)
+        rest = styles[labels[face]].whole
         if rest not in numbers:
             numbers[rest] = len(styles)
             styles.append(rest)

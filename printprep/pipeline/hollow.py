@@ -188,6 +188,7 @@ def result_of(
     seconds: Mapping[Stage, float],
 ) -> HollowResult:
     """Everything that ``hollow`` returns, as one value."""
+    from printprep.output.colours import carried_paint
     from printprep.result import HollowResult
     from printprep.stand.stability import stability
 
@@ -211,5 +212,6 @@ def result_of(
         drainage=filled.drainage,
         infill=filled.infill,
         alternative_fill=alternative,
+        paint=carried_paint(prepared.model, filled.part, solid.repair),
         seconds={str(stage): value for stage, value in seconds.items()},
     )

@@ -78,13 +78,17 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
         Then nothing is written.
     """
     from printprep.check import at_or_above, sorted_findings
+    from printprep.output.colours import colour_findings
     from printprep.output.limits import format_findings
     from printprep.pipeline.hollow import hollow_with
     from printprep.verify.unwritten import verify_result
 
     profile = check_job(job)
     result = hollow_with(job.model, profile, job.placement, job.options, progress)
-    file_findings = [*format_findings(result.profile, job.output, job.written_for)]
+    file_findings = [
+        *format_findings(result.profile, job.output, job.written_for),
+        *colour_findings(result.paint, job.output, job.written_for),
+    ]
     if job.plugs is not None:
         file_findings += _plug_findings(result.drainage, job.plugs)
     result = replace(result, findings=sorted_findings([*result.findings, *file_findings]))

@@ -401,7 +401,7 @@ class _Build:
         faces = mesh.faces[:, ::-1] if mirrored else mesh.faces  # a mirror image is inside out
         self.vertices.append(moved)
         self.faces.append(faces + self._vertex_count)
-        self.labels.append(mesh.labels)
+        self.labels.append(self.book.whole(mesh.labels) if mirrored else mesh.labels)
         self._vertex_count += len(moved)
         self._face_count += len(faces)
 

@@ -24,7 +24,7 @@ class StyleBook:
 
     def __init__(self) -> None:
         self._numbers: dict[Style, int] = {PLAIN: 0}
-        self._textures = self._gradients = self._too_many = False
+        self._textures = self._gradients = self._too_many = self._mirrored = False
 
     def labels(self, model: ParsedModel, found: ParsedObject, count: int) -> Int:
         """(count,), the style of each triangle of an object."""
@@ -42,6 +42,13 @@ class StyleBook:
         together = np.concatenate(labels)
         return Paint(tuple(self._numbers), together) if together.any() else None
 
+    def whole(self, labels: Int) -> Int:
+        """The labels (m,) without codes that split a triangle, which a mirror image turns over."""
+        numbers = np.array([self._number(style.whole) for style in list(self._numbers)])
+        self._mirrored = self._mirrored or bool((numbers[labels] != labels).any())
+        found: Int = numbers[labels]
+        return found
+
     def notes(self) -> list[ReadNote]:
         """What the triangles have that no style can hold."""
         notes = []
@@ -54,6 +61,9 @@ class StyleBook:
                 "the whole triangle."
             )
             notes.append(ReadNote("colours-lost", message, _KEEP))
+        if self._mirrored:
+            message = "Paint that splits triangles is lost where the file mirrors an object."
+            notes.append(ReadNote("colours-lost", message, "Paint the part again."))
         if self._too_many:
             message = "The file has more kinds of paint than are kept; the rest is lost."
             notes.append(ReadNote("colours-lost", message, "Paint the part again."))
