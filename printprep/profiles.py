@@ -18,7 +18,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from printprep.errors import InputError, UsageError
-from printprep.files import read_plain_file
+from printprep.input_file import read_plain_file
 from printprep.profile_schema import Profile
 from printprep.wording import shortened
 

@@ -17,7 +17,7 @@ import click
 from printprep.batches.item import SUFFIXES, Item, item_of
 from printprep.cli.part_options import job_of, part_options
 from printprep.errors import InputError, UsageError
-from printprep.files import check_plain_file
+from printprep.input_file import check_plain_file
 from printprep.wording import shortened
 
 FILE, OUTPUT = "file", "output"

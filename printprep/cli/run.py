@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import click
 
 from printprep.errors import OutputError, PrintprepError, UsageError
-from printprep.wording import printable
 
 _INTERRUPTED = 130
 _DEFECT = 70
@@ -64,7 +63,7 @@ def _usage(error: click.ClickException) -> tuple[str, str | None]:
 
 
 def _report(code: str, message: str, hint: str | None, exit_code: int, as_json: bool) -> int:
-    message = printable(" ".join(message.split()))
+    message = " ".join(message.split())
     if as_json:
         from printprep.output.numbers import to_text
 
@@ -72,5 +71,5 @@ def _report(code: str, message: str, hint: str | None, exit_code: int, as_json: 
         return exit_code
     click.echo(f"printprep: error: {message}", err=True)
     if hint:
-        click.echo(f"  {printable(hint)}", err=True)
+        click.echo(f"  {hint}", err=True)
     return exit_code

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from printprep.errors import InputError
-from printprep.files import check_plain_file
 from printprep.generators.voxel_arrays import LIMIT_BYTES
+from printprep.input_file import check_plain_file
 from printprep.wording import printable, shortened
 
 NAMES = ("coords", "coordinates", "voxels", "binary_voxel", "occupancy")

@@ -41,8 +41,8 @@ _SAMPLES = np.array(
 class Carried:
     """The paint of a part.
 
-    styles : of its faces;  labels : (m,) into ``styles``;  turns : (m,) by how many corners each face must be turned
-    so that it begins as the model's facet does (for codes that split it).
+    styles : of its faces;  labels : (m,) into ``styles``;  turns : (m,) by how many corners each
+    face must be turned so that it begins as the model's facet does (for codes that split it).
     lost_mm2, painted_mm2 : painted area of the model's outside that is not carried as it was, and
     all of it.
     """

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep.errors import InputError
-from printprep.files import read_plain_file
+from printprep.input_file import read_plain_file
 from printprep.mesh.limits import TRIANGLES_MAX, refuse_too_many
 from printprep.types import ReadNote
 from printprep.wording import shortened

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep.errors import InputError, UsageError
-from printprep.files import check_plain_file, read_plain_file
+from printprep.input_file import check_plain_file, read_plain_file
 from printprep.mesh.from_trimesh import arrays_of
 from printprep.mesh.gltf import read_gltf
 from printprep.mesh.limits import refuse_strays, refuse_too_many

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from printprep.arrays import Float, Int
     from printprep.threemf.read import ThreeMF
 
+# The size comes later (--size); only what no kernel can work on is refused here.
+_SMALLEST_MM, _LARGEST_MM = 1e-6, 1e9
+
 
 @dataclass(frozen=True, eq=False)
 class Subtracted:
@@ -76,6 +79,12 @@ def subtracted(found: ThreeMF, what: str) -> Subtracted:
 
 def _solid(vertices: Float, faces: Int, name: str) -> Manifold:
     """The solid of a mesh, where it is: vertices (n, 3) mm, faces (m, 3)."""
+    longest = float(np.ptp(vertices, axis=0).max())
+    if not _SMALLEST_MM <= longest <= _LARGEST_MM:
+        raise GeometryError(
+            f"{name} is {longest:.4g} mm along its longest side, which no solid is.",
+            "Name the unit of the file with --units.",
+        )
     found = repair(Model(*weld(vertices, faces), np.eye(4), name))
     x, y, z = found.placement[:3, 3]
     return found.manifold.translate((-float(x), -float(y), -float(z)))

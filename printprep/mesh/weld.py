@@ -174,9 +174,9 @@ def edge_counts(faces: Int) -> EdgeCounts:
         return EdgeCounts(0, 0)
     edges = directed_edges(faces)
     forward = edges[:, 0] < edges[:, 1]
-    _, index, count = np.unique(
-        np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    keys = low * (int(faces.max()) + 1) + high
+    _, index, count = np.unique(keys, return_inverse=True, return_counts=True)
     balance = np.bincount(index.ravel(), weights=np.where(forward, 1.0, -1.0))
     return EdgeCounts(int((balance != 0).sum()), int((count > 2).sum()))
 

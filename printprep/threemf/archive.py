@@ -20,7 +20,7 @@ from typing import IO, Self
 from urllib.parse import unquote
 
 from printprep.errors import InputError
-from printprep.files import read_plain_file
+from printprep.input_file import read_plain_file
 from printprep.wording import printable
 
 # 512 MiB of XML hold five million triangles, as many as are read.  Real meshes deflate by a factor
