@@ -1,7 +1,7 @@
 """Carries the paint of a mesh to another one whose outside is the same surface.
 
-The facets of a part's outside are facets of the model or pieces of them, since the boolean kernel
-cuts facets and moves none.  So each facet takes the style of the facet of the model that it lies
+The facets of a part's outside are facets of the model or pieces of them: the boolean kernel cuts
+facets, moves none, and joins none of those that :func:`facets_apart` gave an id each.  So each facet takes the style of the facet of the model that it lies
 on.  A facet that lies on none (a base, a cavity, a drain) stays plain; one that lies on several
 styles takes that of most of its area.  Codes of paint that split a triangle hold only for the
 triangle that they were made for, corner by corner.
@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import area_normals
+from printprep.mesh.measure import area_normals, arrays
 from printprep.types import Paint, Style
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from printprep.arrays import Bool, Float, Int
 
 # Facets of a written part lie on the model to float32; a repair may move it by more.
@@ -98,6 +100,20 @@ def carried(
         turns,
         float(areas[lost].sum()),
         float(areas[painted].sum()),
+    )
+
+
+def facets_apart(manifold: Manifold) -> Manifold:
+    """The same manifold, whose facets keep their edges in every boolean, flat as they may be."""
+    from manifold3d import Manifold, Mesh64
+
+    vertices, faces = arrays(manifold)
+    return Manifold(
+        Mesh64(
+            np.require(vertices, np.float64, ["C", "W"]),
+            np.require(faces, np.uint64, ["C", "W"]),
+            face_id=np.arange(len(faces), dtype=np.uint64),
+        )
     )
 
 

@@ -38,12 +38,15 @@ def prepare(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
+    from printprep.mesh.carry import facets_apart
     from printprep.mesh.repair import repair
 
     with progress.stage("read"):
         placed = placed_model(model, placement)
     with progress.stage("repair"):
         solid = repair(placed)
+        if placed.paint is not None:
+            solid = replace(solid, manifold=facets_apart(solid.manifold))
         if placement.pose is not None:
             placed, solid = _posed(placed, solid, placement.pose)
     return Prepared(placed, solid, profile)
