@@ -1,10 +1,11 @@
 """Carries the paint of a mesh to another one whose outside is the same surface.
 
 The facets of a part's outside are facets of the model or pieces of them: the boolean kernel cuts
-facets, moves none, and joins none of those that :func:`facets_apart` gave an id each.  So each facet takes the style of the facet of the model that it lies
-on.  A facet that lies on none (a base, a cavity, a drain) stays plain; one that lies on several
-styles takes that of most of its area.  Codes of paint that split a triangle hold only for the
-triangle that they were made for, corner by corner.
+facets, moves none, and joins none of those that :func:`facets_apart` gave an id each.  So each
+facet takes the style of the facet of the model that it lies on.  A facet that lies on none (a base,
+a cavity, a drain) stays plain; one that lies on several styles takes that of most of its area.
+Codes of paint that split a triangle hold only for the triangle that they were made for, corner by
+corner.
 """
 
 from __future__ import annotations
@@ -83,22 +84,21 @@ def carried(
     away = np.sqrt(np.maximum(squared, 0)).reshape(side.shape)
     on = (away <= _ON_MM + slack_mm) & ((side >= _SAME_SIDE) | (slack_mm > 0) & (side > 0))
     found = np.where(on, paint.labels[nearest].reshape(side.shape), 0)
-    labels, pure = _most(found)
+    labels, others = _most(found)
     turns = np.zeros(len(to_faces), dtype=np.int64)
     styles = list(paint.styles)
     split = np.array([style.splits for style in styles])
     if split.any():
         middle = vertices[faces[nearest.reshape(side.shape)[:, 0]]]
         labels, turns, kept = _whole_only(split, styles, labels, corners, middle)
-        pure &= kept
+        others[~kept] = 1.0
     areas = np.linalg.norm(area_normals(corners), axis=1) / 2
     painted = (found != 0).any(axis=1)
-    lost = painted & ~pure
     return Carried(
         tuple(styles),
         labels,
         turns,
-        float(areas[lost].sum()),
+        float((areas * others)[painted].sum()),
         float(areas[painted].sum()),
     )
 
@@ -117,8 +117,8 @@ def facets_apart(manifold: Manifold) -> Manifold:
     )
 
 
-def _most(found: Int) -> tuple[Int, Bool]:
-    """(m,) the label that most samples of a row of found (m, s) have, and whether all have it."""
+def _most(found: Int) -> tuple[Int, Float]:
+    """(m,) the label that most samples of a row of found (m, s) have; the share of the others."""
     ordered = np.sort(found, axis=1)
     best = ordered[:, 0].copy()
     most = np.zeros(len(found), dtype=np.int64)
@@ -126,7 +126,7 @@ def _most(found: Int) -> tuple[Int, Bool]:
         count = (found == ordered[:, column : column + 1]).sum(axis=1)
         better = count > most
         best[better], most[better] = ordered[better, column], count[better]
-    return best, most == found.shape[1]
+    return best, 1 - most / found.shape[1]
 
 
 def _whole_only(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from printprep.types import Finding, Model, Part, Repair, SlicerName
 
 # Less than this share of the painted surface is a seam between two colours, not a loss.
-_LOST_SHARE = 0.01
+_LOST_SHARE = 0.02
 _AGAIN = "Paint the part again in the slicer."
 
 
