@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from printprep.errors import InputError
+from printprep.errors import InputError, PrintprepError
 from printprep.input_file import read_plain_file
 from printprep.mesh.limits import TRIANGLES_MAX, refuse_too_many
 from printprep.types import ReadNote
@@ -28,23 +28,8 @@ if TYPE_CHECKING:
 _TRIANGLES, _STRIP = 4, (5, 6)
 _NODES_MAX = 100_000
 _PACKED = {"KHR_draco_mesh_compression": "Draco", "EXT_meshopt_compression": "meshopt"}
-# Exceptions that trimesh's readers raise on a malformed file.
-_UNREADABLE = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    NotImplementedError,
-    OSError,
-    RecursionError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    struct.error,
-)
+# What a header that is not as the standard says can raise where it is compared with limits.
+_ODD = (AttributeError, LookupError, RecursionError, TypeError, ValueError, struct.error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,17 +52,25 @@ def read_gltf(data: bytes, suffix: str, path: Path) -> GltfMesh:
     from printprep.mesh.from_trimesh import arrays_of
 
     try:
-        header = _header(data, suffix)
-        notes = _checked(header, path)
+        notes = _checked(_header(data, suffix), path)
+    except _ODD as error:
+        raise _unreadable(path, suffix, error) from error
+    try:
         with np.errstate(all="ignore"):
             scene = _scene(data, suffix, path)
-        return GltfMesh(*arrays_of(scene, str(path)), notes)
-    except _UNREADABLE as error:
-        text = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(
-            f"{path} cannot be read as {suffix[1:].upper()}: {shortened(text, 160).rstrip('.')}.",
-            "Export the model again, or export it in another format.",
-        ) from error
+    except PrintprepError:
+        raise
+    except Exception as error:  # trimesh raises whatever a damaged file leads it to
+        raise _unreadable(path, suffix, error) from error
+    return GltfMesh(*arrays_of(scene, str(path)), notes)
+
+
+def _unreadable(path: Path, suffix: str, error: Exception) -> InputError:
+    text = " ".join(str(error).split()) or type(error).__name__
+    return InputError(
+        f"{path} cannot be read as {suffix[1:].upper()}: {shortened(text, 160).rstrip('.')}.",
+        "Export the model again, or export it in another format.",
+    )
 
 
 def _scene(data: bytes, suffix: str, path: Path) -> Any:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import lzma
 import posixpath
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -55,7 +56,7 @@ class Archive:
         content = read_plain_file(path)
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
-        except _DAMAGE as error:
+        except (*_DAMAGE, ValueError, struct.error) as error:
             raise InputError(
                 f"{self.name} cannot be opened as a 3MF file: {printable(str(error))}.",
                 "A 3MF is a zip archive: download or export it again.",
@@ -115,12 +116,18 @@ class Archive:
                 "large for a model."
             )
         try:
-            with self._zip.open(entry) as stream:
+            stream = self._zip.open(entry)
+        except (*_DAMAGE, ValueError, struct.error) as error:
+            raise self._damaged(part, error) from error
+        with stream:
+            try:
                 yield stream
-        except _DAMAGE as error:
-            raise InputError(
-                f"{self.name}: the part {part} is damaged: {printable(str(error))}.", _AGAIN
-            ) from error
+            except _DAMAGE as error:
+                raise self._damaged(part, error) from error
+
+    def _damaged(self, part: str, error: Exception) -> InputError:
+        fact = printable(str(error)).rstrip(".") or type(error).__name__
+        return InputError(f"{self.name}: the part {part} is damaged: {fact}.", _AGAIN)
 
     def read(self, part: str, limit_bytes: int = SMALL_PART_BYTES_MAX) -> bytes:
         """The content of a part; InputError where it is larger than `limit_bytes`."""
