@@ -61,7 +61,11 @@ class Archive:
                 f"{self.name} cannot be opened as a 3MF file: {printable(str(error))}.",
                 "A 3MF is a zip archive: download or export it again.",
             ) from error
-        entries = [entry for entry in self._zip.infolist() if not entry.is_dir()]
+        entries = [
+            entry
+            for entry in self._zip.infolist()
+            if entry.filename and not entry.filename.endswith("/")  # a folder, or no name at all
+        ]
         if len(entries) > PARTS_MAX:
             raise InputError(f"{self.name} holds {len(entries)} parts, too many for a model.")
         self._entries: dict[str, zipfile.ZipInfo] = {}

@@ -360,6 +360,17 @@ def with_index(text: str) -> str:
     return model_xml(OBJECT.replace('v1="0"', f'v1="{text}"', 1))
 
 
+def test_a_part_without_a_name_is_no_part(tmp_path: Path) -> None:
+    path = tmp_path / "a.3mf"
+    nameless = zipfile.ZipInfo("name")
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("3D/3dmodel.model", model_xml(OBJECT))
+        archive.writestr(nameless, "x")
+        nameless.filename = ""  # as the list at the end of the file will name it
+    assert "" in zipfile.ZipFile(path).namelist()
+    assert len(read_3mf(path).faces) == 12
+
+
 LIMITS = {
     "deep": (model_xml("<metadatagroup>" * 100_000 + "</metadatagroup>" * 100_000), "nested"),
     "objects": (model_xml(OBJECT + EMPTY), "100000 objects"),
