@@ -57,12 +57,12 @@ def read_gltf(data: bytes, suffix: str, path: Path) -> GltfMesh:
         raise _unreadable(path, suffix, error) from error
     try:
         with np.errstate(all="ignore"):
-            scene = _scene(data, suffix, path)
+            vertices, faces = arrays_of(_scene(data, suffix, path), str(path))
     except PrintprepError:
         raise
     except Exception as error:  # trimesh raises whatever a damaged file leads it to
         raise _unreadable(path, suffix, error) from error
-    return GltfMesh(*arrays_of(scene, str(path)), notes)
+    return GltfMesh(vertices, faces, notes)
 
 
 def _unreadable(path: Path, suffix: str, error: Exception) -> InputError:

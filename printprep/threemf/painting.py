@@ -16,7 +16,7 @@ from printprep.threemf.xml_text import escape
 from printprep.types import Material, Style
 
 if TYPE_CHECKING:
-    from printprep.threemf.write import Item, Volume
+    from printprep.threemf.item import Item, Volume
 
 PRUSA_STROKES: Mapping[str, str] = MappingProxyType(
     {

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from printprep.errors import UsageError
+from printprep.threemf.item import Item, Volume, VolumeKind
 from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
 from printprep.threemf.painting import (
     PRUSA_STROKES,
@@ -31,12 +31,9 @@ from printprep.threemf.painting import (
 from printprep.threemf.xml_text import clean, escape, triangle_lines, vertex_lines
 
 if TYPE_CHECKING:
-    from printprep.arrays import Float, Int
-    from printprep.types import Paint
+    pass
 
-VolumeKind = Literal[
-    "ModelPart", "NegativeVolume", "ParameterModifier", "SupportBlocker", "SupportEnforcer"
-]
+__all__ = ["Item", "Volume", "VolumeKind", "write_3mf"]
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _SLIC3R = "http://schemas.slic3r.org/3mf/2017/06"
@@ -52,36 +49,6 @@ _METADATA = (
 )
 
 _ATTACHMENT = re.compile(r"Metadata/[A-Za-z0-9_-]+\.(json|txt)")
-
-
-@dataclass(frozen=True, eq=False)
-class Volume:
-    """A closed mesh and its purpose.
-
-    vertices : (n, 3) mm;  faces : (m, 3) indices into them, counter-clockwise seen from outside;
-    settings : slicer keys of this volume only (useful on a ParameterModifier);
-    paint : colours of the faces, None where there are none.
-    """
-
-    name: str
-    vertices: Float
-    faces: Int
-    kind: VolumeKind = "ModelPart"
-    settings: Mapping[str, str] = field(default_factory=dict)
-    paint: Paint | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Item:
-    """One object on the bed z = 0; the slicer does not move it.
-
-    settings : slicer keys of the object;  translation_mm : place of its origin, (x, y, z).
-    """
-
-    name: str
-    volumes: Sequence[Volume]
-    settings: Mapping[str, str] = field(default_factory=dict)
-    translation_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def write_3mf(
