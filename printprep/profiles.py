@@ -26,6 +26,7 @@ __all__ = ["DEFAULT_PROFILE", "Profile", "load_profile", "profile_names", "profi
 
 DEFAULT_PROFILE = "fdm-pla-0.4"
 _PROFILE_BYTES_MAX = 1 << 20
+_FACTS_MAX = 8
 
 _FOLDERS = (
     Path(__file__).resolve().parent / "_profiles",  # inside an installed wheel
@@ -148,7 +149,9 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
         facts.setdefault(key, _fact(item["type"], path, item))  # a list's items count as one
     if overrides:
         source = f"{source} with the keys that were set"
-    lines = [f"{key} {fact}" for key, fact in facts.items()]
+    lines = [f"{shortened(key)} {fact}" for key, fact in facts.items()]
+    if len(lines) > _FACTS_MAX:
+        lines[_FACTS_MAX:] = [f"and {len(lines) - _FACTS_MAX} more"]
     return UsageError(
         f"{source}: {'; '.join(lines)}.",
         "`printprep profiles show NAME` shows every key in use.",

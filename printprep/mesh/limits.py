@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 TRIANGLES_MAX = 5_000_000
 # A corner this many times as far from the middle as nine tenths of them is damage, not shape.
 _STRAY = 1e5
+_SAMPLES = 1_000_000  # corners that tell where the middle is
 
 
 def refuse_too_many(count: int, what: str) -> None:
@@ -34,10 +35,13 @@ def refuse_strays(vertices: Float, faces: Int, what: str) -> None:
     """
     used = np.zeros(len(vertices), dtype=bool)
     used[faces.ravel()] = True
-    corners = vertices[used]
-    middle = np.median(corners, axis=0)
-    away = np.abs(corners / 2 - middle / 2).max(axis=1)  # halves, so that nothing overflows
-    most = float(np.quantile(away, 0.9))
+    corners = vertices if used.all() else vertices[used]
+    some = corners[:: 1 + len(corners) // _SAMPLES]
+    middle = np.median(some, axis=0)
+    away = np.zeros(len(corners))
+    for axis in range(3):  # halves, so that nothing overflows
+        np.maximum(away, np.abs(corners[:, axis] / 2 - middle[axis] / 2), out=away)
+    most = float(np.quantile(away[:: 1 + len(corners) // _SAMPLES], 0.9))
     if most <= 0.0 or not float(away.max()) / _STRAY > most:
         return
     strays = int((away / _STRAY > most).sum())

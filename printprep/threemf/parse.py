@@ -67,7 +67,7 @@ _OBJECTS_MAX = 100_000
 _REFERENCES_MAX = 200_000
 _MATERIALS_MAX = 100_000
 _STYLES_MAX = 500_000
-_VERTICES_MAX = 15_000_000
+_VERTICES_MAX = 10_000_000
 _TRIANGLES_MAX = 5_000_000
 _ELEMENTS_MAX = 200_000  # of a slicer's config
 
@@ -153,6 +153,7 @@ class _Model:
         self._group: list[Material | None] | None = None
         self._namespaces: dict[str, str] = {}
         self._core: str | None = None
+        self._vertex = ""
         self._skipping = self._depth = self._references = self._styles = self._material_count = 0
         self._styles_lost = False
         self._object: ParsedObject | None = None
@@ -166,14 +167,28 @@ class _Model:
             raise ValueError(f"its elements are nested deeper than {_DEPTH_MAX}")
         if self._core is None:
             self._root(tag, attributes)
+        elif tag == self._vertex and self._object is not None and not self._skipping:
+            # Most elements are this one; it is read without another call.
+            try:
+                x, y, z = attributes["x"], attributes["y"], attributes["z"]
+                numbers = (float(x), float(y), float(z))
+                whole = x + y + z
+                if "_" in whole or not whole.isascii():  # Python would take 2_0 for 20
+                    raise ValueError
+            except (KeyError, ValueError):
+                count = len(self._object.coordinates) // 3
+                raise _no_numbers("vertex", count, attributes, ("x", "y", "z")) from None
+            self._object.coordinates.extend(numbers)
         elif self._skipping or not tag.startswith(self._core):
             self._skipping += 1
             if tag.startswith(_MATERIALS):
                 self._colour(tag[len(_MATERIALS) :], attributes)
         else:
             name = tag[len(self._core) :]
-            if name == "vertex" or name == "triangle":
-                self._mesh(name, attributes)
+            if name == "triangle":
+                self._triangle(attributes)
+            elif name == "vertex":
+                raise ValueError("<vertex> stands outside an object")
             elif name == "object":
                 self._start_object(attributes)
             elif name == "component":
@@ -213,6 +228,7 @@ class _Model:
         self._core = tag[: tag.rfind("}") + 1]
         if tag[len(self._core) :] != "model":
             raise ValueError("the root element is not <model>")
+        self._vertex = f"{self._core}vertex"
         self.unit = attributes.get("unit", self.unit)
         for prefix in attributes.get("requiredextensions", "").split():
             uri = self._namespaces.get(prefix, prefix)
@@ -241,25 +257,19 @@ class _Model:
             raise ValueError(f"it has more than {_REFERENCES_MAX} items and components")
         return _reference(element, attributes)
 
-    def _mesh(self, name: str, attributes: dict[str, str]) -> None:
+    def _triangle(self, attributes: dict[str, str]) -> None:
         owner = self._object
         if owner is None:
-            raise ValueError(f"<{name}> stands outside an object")
-        flat: array[float] | array[int]
-        keys = ("x", "y", "z") if name == "vertex" else ("v1", "v2", "v3")
-        flat = owner.coordinates if name == "vertex" else owner.indices
+            raise ValueError("<triangle> stands outside an object")
         try:
-            a, b, c = attributes[keys[0]], attributes[keys[1]], attributes[keys[2]]
+            a, b, c = attributes["v1"], attributes["v2"], attributes["v3"]
             whole = a + b + c
-            if "_" in whole or not whole.isascii():  # Python would take 2_0 for 20
+            if "_" in whole or not whole.isascii():
                 raise ValueError
-            if name == "vertex":
-                owner.coordinates.extend((float(a), float(b), float(c)))
-                return
             owner.indices.extend((int(a), int(b), int(c)))
         except (KeyError, ValueError, OverflowError):
-            said = shortened(" ".join(attributes.get(key, "?")[:80] for key in keys))
-            raise ValueError(f"{name} {len(flat) // 3} is not three numbers: {said}") from None
+            count = len(owner.indices) // 3
+            raise _no_numbers("triangle", count, attributes, ("v1", "v2", "v3")) from None
         if len(attributes) > 3:
             self._properties(owner, attributes)
 
@@ -304,6 +314,13 @@ class _Model:
         if self._group is not None:
             right = _COLOUR.fullmatch(colour) is not None
             self._group.append(Material(name or colour.upper(), colour.upper()) if right else None)
+
+
+def _no_numbers(
+    name: str, count: int, attributes: dict[str, str], keys: tuple[str, str, str]
+) -> ValueError:
+    said = shortened(" ".join(attributes.get(key, "?")[:80] for key in keys))
+    return ValueError(f"{name} {count} is not three numbers: {said}")
 
 
 def parse_model(stream: IO[bytes], label: str) -> ParsedModel:
