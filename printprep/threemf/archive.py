@@ -22,7 +22,7 @@ from urllib.parse import unquote
 
 from printprep.errors import InputError
 from printprep.input_file import read_plain_file
-from printprep.wording import printable
+from printprep.wording import printable, shortened
 
 # 512 MiB of XML hold five million triangles, as many as are read.  Real meshes deflate by a factor
 # of up to 30; a part that inflates by far more, to a size that matters, is a zip bomb.
@@ -58,7 +58,7 @@ class Archive:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except (*_DAMAGE, ValueError, struct.error) as error:
             raise InputError(
-                f"{self.name} cannot be opened as a 3MF file: {printable(str(error))}.",
+                f"{self.name} cannot be opened as a 3MF file: {shortened(str(error), 160)}.",
                 "A 3MF is a zip archive: download or export it again.",
             ) from error
         entries = [
@@ -130,7 +130,7 @@ class Archive:
                 raise self._damaged(part, error) from error
 
     def _damaged(self, part: str, error: Exception) -> InputError:
-        fact = printable(str(error)).rstrip(".") or type(error).__name__
+        fact = shortened(str(error), 160).rstrip(".") or type(error).__name__
         return InputError(f"{self.name}: the part {part} is damaged: {fact}.", _AGAIN)
 
     def read(self, part: str, limit_bytes: int = SMALL_PART_BYTES_MAX) -> bytes:
