@@ -26,11 +26,13 @@ class ReadNote:
     """What a reader changed, left out or could not tell, so that the user knows what was read.
 
     kind : "facet-count", the file's own count of its facets is wrong;  "cut-short", the rest of the
-    file is missing;  "left-out", parts of a project that are not the model's shape;  "subtracted",
-    negative volumes;  "colours-lost", colours or paint that no part carries.
+    file is missing;  "left-out", parts of a project that are not the model's shape;
+    "read-together", several objects;  "subtracted", negative volumes;  "colours-lost", colours or paint that no part carries.
     """
 
-    kind: Literal["facet-count", "cut-short", "left-out", "subtracted", "colours-lost"]
+    kind: Literal[
+        "facet-count", "cut-short", "left-out", "read-together", "subtracted", "colours-lost"
+    ]
     message: str
     fix: str | None = None
 

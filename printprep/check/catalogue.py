@@ -48,6 +48,7 @@ _KINDS = (
     Kind("cut-short", None, _WARNING, "half a model taken for a whole one"),
     Kind("facet-count", None, _INFO, "facets that another program drops, or adds"),
     Kind("left-out", None, _INFO, "a project of which only a part was read"),
+    Kind("read-together", None, _INFO, "several objects hollowed where one was meant"),
     Kind("subtracted", None, _INFO, "a hole that came from a project without a word"),
     # size and place
     Kind("fits-bed", "mm", _ERROR, "a part that does not fit into the printer"),

@@ -12,6 +12,7 @@ _MADE: Mapping[str, Callable[[ReadNote], Finding]] = {
     "cut-short": lambda note: finding("cut-short", note.message, note.fix),
     "facet-count": lambda note: finding("facet-count", note.message, note.fix),
     "left-out": lambda note: finding("left-out", note.message, note.fix),
+    "read-together": lambda note: finding("read-together", note.message, note.fix),
     "subtracted": lambda note: finding("subtracted", note.message, note.fix),
 }
 

@@ -30,7 +30,7 @@ from printprep.types import ReadNote
 from printprep.wording import counted, shortened
 
 if TYPE_CHECKING:
-    from printprep.arrays import Float
+    from printprep.arrays import Float, Int
 
 
 _AGAIN = "Export the model again, as binary STL if possible."
@@ -101,20 +101,37 @@ def _read_binary(data: bytes, what: str, partial: bool) -> Facets:
     records = np.frombuffer(data, dtype=_RECORD, count=there, offset=_HEADER)
     with np.errstate(invalid="ignore"):  # a signalling NaN; what is not finite is refused later
         corners = records["corners"].astype(np.float64)
+    colours = _colour_notes(data, records["attribute"])
     if named == there:  # a few bytes may follow, as some programs leave
-        return Facets(corners)
+        return Facets(corners, colours)
     if named < there and named not in _STREAMED:
         if left_over or not _of_one_model(corners, named):
             beyond = len(data) - _HEADER - named * _RECORD.itemsize
             message = f"{counted(beyond, 'byte')} after the last facet of the file were left out."
-            return Facets(corners[:named], (ReadNote("facet-count", message),))
+            return Facets(corners[:named], (ReadNote("facet-count", message), *colours))
     elif (left_over or named not in _STREAMED) and not _closes(corners):
         return _cut_short(corners, what, partial, f"its header names {named}")
     message = (
         f"The header of the file names {counted(named, 'facet')}, the file has {there}; all "
         f"{there} were read."
     )
-    return Facets(corners, (ReadNote("facet-count", message),))
+    return Facets(corners, (ReadNote("facet-count", message), *colours))
+
+
+def _colour_notes(data: bytes, attributes: Int) -> tuple[ReadNote, ...]:
+    """That the facets have colours, which two programs put into the attributes, (m,) each.
+
+    VisCAM sets the highest bit of a coloured facet; Magics clears it, and says so in the header.
+    """
+    if b"COLOR=" not in data[:80] and not ((attributes & 0x8000) != 0).any():
+        return ()
+    return (
+        ReadNote(
+            "colours-lost",
+            "The colours of the STL file are not read: the part has none.",
+            "Save the model as a 3MF with its colours to keep them on the outside.",
+        ),
+    )
 
 
 def _of_one_model(corners: Float, named: int) -> bool:

@@ -270,7 +270,7 @@ class _Build:
                 f"{self._listed(references)}."
             )
             self._notes.append(
-                ReadNote("left-out", message, "Take one of them with --object NAME or N.")
+                ReadNote("read-together", message, "Take one of them with --object NAME or N.")
             )
         return references
 

@@ -163,6 +163,13 @@ def test_colours_that_are_not_read_are_named(tmp_path: Path) -> None:
     assert kinds(read(tmp_path, "a.obj", b"usemtl red\n" + OBJ)) == []
 
 
+def test_colours_of_an_stl_are_named_as_lost(tmp_path: Path) -> None:
+    assert kinds(read(tmp_path, "a.stl", b"COLOR=".ljust(80) + STL[80:])) == ["colours-lost"]
+    viscam = STL[:132] + struct.pack("<H", 0x801F) + STL[134:]
+    assert kinds(read(tmp_path, "a.stl", viscam)) == ["colours-lost"]
+    assert kinds(read(tmp_path, "a.stl", counting(0, viscam))) == ["facet-count", "colours-lost"]
+
+
 def test_plates_and_objects_are_of_3mf_files_alone(tmp_path: Path) -> None:
     for choice in ({"plate": 1}, {"item": "box"}):
         with pytest.raises(UsageError, match="only a 3MF has plates and objects"):
