@@ -27,7 +27,8 @@ class ReadNote:
 
     kind : "facet-count", the file's own count of its facets is wrong;  "cut-short", the rest of the
     file is missing;  "left-out", parts of a project that are not the model's shape;
-    "read-together", several objects;  "subtracted", negative volumes;  "colours-lost", colours or paint that no part carries.
+    "read-together", several objects;  "subtracted", negative volumes;  "colours-lost", colours or
+    paint that no part carries.
     """
 
     kind: Literal[

@@ -256,11 +256,11 @@ class _Build:
         plates = [found for found in self._project.plates if found.members & keys]
         members = self._members(plates, plate, item)
         if members is not None:
-            beside = len(printed)
-            printed = [(reference, key) for reference, key in printed if key in members]
-            beside -= len(printed)
+            everywhere = frozenset().union(*(found.members for found in plates))
+            beside = len(keys - everywhere)
             if beside:
-                self._leave(f"{counted(beside, 'object')} beside the plate")
+                self._leave(f"{counted(beside, 'object')} beside the plates")
+            printed = [(reference, key) for reference, key in printed if key in members]
         references = [reference for reference, _ in printed]
         if item is not None:
             return [self._named(references, item)]

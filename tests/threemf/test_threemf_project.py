@@ -68,6 +68,7 @@ def test_plates_are_never_merged(tmp_path: Path) -> None:
     assert "--plate N" in (caught.value.hint or "")
     assert total(read_3mf(path, plate=1)) == pytest.approx(2)
     assert total(read_3mf(path, plate=2)) == pytest.approx(8)
+    assert read_3mf(path, plate=2).notes == ()
     with pytest.raises(UsageError, match="no plate 3") as unknown:
         read_3mf(path, plate=3)
     assert "block.stl" in (unknown.value.hint or "")
@@ -79,7 +80,7 @@ def test_one_plate_needs_no_name_and_takes_only_what_lies_on_it(tmp_path: Path) 
     path = project(tmp_path / "a.3mf", plate(1, [(2, 0), (2, 1)]) + plate(2, []))
     found = read_3mf(path)
     assert total(found) == pytest.approx(2)
-    assert "1 object beside the plate" in said(found)
+    assert "1 object beside the plates" in said(found)
     off = project(
         tmp_path / "b.3mf",
         plate(1, [(2, 0), (2, 1)]) + plate(2, [(4, 0)]),
