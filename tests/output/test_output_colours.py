@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import zipfile
 from pathlib import Path
 
@@ -145,3 +146,19 @@ def test_orca_gets_the_paint_under_its_own_names(model: Path, tmp_path: Path) ->
         text = archive.read("3D/3dmodel.model")
     assert b'paint_color="8"' in text
     assert b"mmu_segmentation" not in text
+
+
+@pytest.mark.slicer
+def test_the_slicer_itself_keeps_the_paint(prusa_slicer: Path, model: Path, tmp_path: Path) -> None:
+    """PrusaSlicer reads the part, and writes the same painted area in a file of its own."""
+    part, theirs = tmp_path / "part.3mf", tmp_path / "theirs.3mf"
+    run_job(Job(model, part, options=QUICK))
+    command = [str(prusa_slicer), "--dont-arrange", "--export-3mf", "-o", str(theirs), str(part)]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
+    areas_of = []
+    for path in (part, theirs):
+        found = read_3mf(path)
+        assert found.paint is not None
+        by_style = area_by_style(found.paint, found.vertices, found.faces)
+        areas_of.append(sum(area for style, area in by_style.items() if style.strokes))
+    assert areas_of[1] == pytest.approx(areas_of[0], rel=1e-4)
