@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 # 5 million triangles on a figure of 100 mm are edges of 0.1 mm, finer than any layer.
 TRIANGLES_MAX = 5_000_000
 # A corner this many times as far from the middle as nine tenths of them is damage, not shape.
-_STRAY = 1e5
+_STRAY = 1e4
 _SAMPLES = 1_000_000  # corners that tell where the middle is
 
 
