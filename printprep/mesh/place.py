@@ -93,11 +93,16 @@ def refuse_size(name: str, side_mm: float) -> None:
         return
     small = side_mm < _SMALLEST_MM
     raise GeometryError(
-        f"{name} is {side_mm:.4g} mm along its longest side: too {'small' if small else 'large'} "
+        f"{name} is {_length(side_mm)} along its longest side: too {'small' if small else 'large'} "
         f"to print ({'less' if small else 'more'} than "
         f"{_SMALLEST_MM if small else _LARGEST_MM:g} mm).",
         "Name the unit of the file with --units, or the size in mm with --size or --scale.",
     )
+
+
+def _length(side_mm: float) -> str:
+    """A length in words, in metres where that is plainer ("100 m")."""
+    return f"{side_mm / 1000:.4g} m" if 1e3 <= side_mm < 1e7 else f"{side_mm:.4g} mm"
 
 
 def _factor(

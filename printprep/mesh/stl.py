@@ -122,8 +122,10 @@ def _colour_notes(data: bytes, attributes: Int) -> tuple[ReadNote, ...]:
     """That the facets have colours, which two programs put into the attributes, (m,) each.
 
     VisCAM sets the highest bit of a coloured facet; Magics clears it, and says so in the header.
+    One colour for all facets is what some programs write for none.
     """
-    if b"COLOR=" not in data[:80] and not ((attributes & 0x8000) != 0).any():
+    coded = b"COLOR=" in data[:80] or bool(((attributes & 0x8000) != 0).any())
+    if not coded or not len(attributes) or (attributes == attributes[0]).all():
         return ()
     return (
         ReadNote(

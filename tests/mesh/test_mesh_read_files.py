@@ -164,7 +164,9 @@ def test_colours_that_are_not_read_are_named(tmp_path: Path) -> None:
 
 
 def test_colours_of_an_stl_are_named_as_lost(tmp_path: Path) -> None:
-    assert kinds(read(tmp_path, "a.stl", b"COLOR=".ljust(80) + STL[80:])) == ["colours-lost"]
+    assert kinds(read(tmp_path, "a.stl", b"COLOR=".ljust(80) + STL[80:])) == []
+    magics = b"COLOR=".ljust(80) + STL[80:132] + struct.pack("<H", 0x1F) + STL[134:]
+    assert kinds(read(tmp_path, "a.stl", magics)) == ["colours-lost"]
     viscam = STL[:132] + struct.pack("<H", 0x801F) + STL[134:]
     assert kinds(read(tmp_path, "a.stl", viscam)) == ["colours-lost"]
     assert kinds(read(tmp_path, "a.stl", counting(0, viscam))) == ["facet-count", "colours-lost"]
