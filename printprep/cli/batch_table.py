@@ -45,7 +45,7 @@ def items_in(
             items.append(_item(table, row, given, folder, suffix, fail_on))
         except (UsageError, click.UsageError, InputError) as error:
             what = error.format_message() if isinstance(error, click.UsageError) else error.message
-            wrong.append(f"line {line}: {what}")
+            wrong.append(f"line {line}: {shortened(what, 300)}")
     if wrong:
         more = f" (and {len(wrong) - 10} more)" if len(wrong) > 10 else ""
         raise UsageError(f"{table}: {' '.join(wrong[:10])}{more}", "Nothing was started.")
@@ -86,12 +86,13 @@ def _check_columns(table: Path, columns: list[str]) -> None:
         raise UsageError(f"{table} has no column {FILE}.", "Give each model's file in it.")
     for name in columns:
         if columns.count(name) > 1:
-            raise UsageError(f"{table} has the column {name} twice.", "Keep one.")
+            raise UsageError(f"{table} has the column {shortened(name)} twice.", "Keep one.")
         if name not in (FILE, OUTPUT, *options):
             close = difflib.get_close_matches(name, (FILE, OUTPUT, *options), n=1)
             known = ", ".join((FILE, OUTPUT, *options))
             hint = f"Did you mean {close[0]}?" if close else f"Columns are {known}."
-            raise UsageError(f"{table}: {name} is not an option of `printprep hollow`.", hint)
+            what = f"{shortened(name)} is not an option of `printprep hollow`"
+            raise UsageError(f"{table}: {what}.", hint)
 
 
 def _item(

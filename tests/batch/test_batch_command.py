@@ -101,6 +101,9 @@ def test_names_that_no_file_has_are_told_by_their_line(tmp_path):
     with pytest.raises(UsageError, match="does not exist") as caught:
         items_in(path, GIVEN, tmp_path, ".3mf", "none")
     assert len(caught.value.message) < 600
+    path.write_text('file,"si\nze"\na.stl,5\n')
+    with pytest.raises(UsageError, match="si ze is not an option"):
+        items_in(path, GIVEN, tmp_path, ".3mf", "none")
     device = tmp_path / "zero.csv"
     device.symlink_to("/dev/zero")
     with pytest.raises(InputError, match="is not a plain file"):
