@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.errors import UsageError
+from printprep.errors import GeometryError, UsageError
 from printprep.types import Model
 
 if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.mesh.read import RawMesh
 
+
+# Larger than any printer, and smaller than anything that one can print: such numbers are a wrong
+# unit, and no stage can work on them.
+_LARGEST_MM = 5000.0
+_SMALLEST_MM = 1e-3
 
 # Proper rotations (determinant +1) by quarter turns that take the named file axis to +z: about x
 # for ±y, about y for ±x, half a turn about x for −z, the shortest turn in each case.
@@ -58,11 +63,14 @@ def place(
     ------
     UsageError : two of these at once, one that is not a positive number, an unknown axis, or a
         height for a mesh that is flat.
+    GeometryError : the placed model is larger or smaller than anything that is printed.
     """
     turn = rotation(up)
     turned = raw.vertices @ turn.T
     extents = turned.max(axis=0) - turned.min(axis=0)
     factor = _factor(extents, scale, height_mm, size_mm)
+    side_mm = float(extents.max()) * factor
+    refuse_size(raw.name, side_mm if math.isfinite(factor) else float(extents.max()))
     scaled = turned * factor
     low, high = scaled.min(axis=0), scaled.max(axis=0)
     shift = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
@@ -74,7 +82,27 @@ def place(
         faces=raw.faces,
         placement=step @ raw.from_file,
         name=raw.name,
+        notes=raw.notes,
+        paint=raw.paint,
     )
+
+
+def refuse_size(name: str, side_mm: float) -> None:
+    """Raise GeometryError for a longest side that no printer prints."""
+    if _SMALLEST_MM <= side_mm <= _LARGEST_MM:
+        return
+    small = side_mm < _SMALLEST_MM
+    raise GeometryError(
+        f"{name} is {_length(side_mm)} along its longest side: too {'small' if small else 'large'} "
+        f"to print ({'less' if small else 'more'} than "
+        f"{_SMALLEST_MM if small else _LARGEST_MM:g} mm).",
+        "Name the unit of the file with --units, or the size in mm with --size or --scale.",
+    )
+
+
+def _length(side_mm: float) -> str:
+    """A length in words, in metres where that is plainer ("100 m")."""
+    return f"{side_mm / 1000:.4g} m" if 1e3 <= side_mm < 1e7 else f"{side_mm:.4g} mm"
 
 
 def _factor(

@@ -47,7 +47,8 @@ def check(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.check import context_of_solid, run_rules
+    from printprep.check import context_of_solid, run_rules, sorted_findings
+    from printprep.check.reading import reading_findings
     from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
     from printprep.stand.lean import lean_of
@@ -60,5 +61,6 @@ def check(
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)
         context = context_of_solid(part, part_stability, requested, solid.repair, prepared.model)
-        findings = run_rules(context, settings)
+        read = reading_findings(prepared.model.notes)
+        findings = sorted_findings([*read, *run_rules(context, settings)])
     return Checked(context, findings, settings)
