@@ -96,6 +96,8 @@ class Model:
     placement : (4, 4) float64, file coordinates → these coordinates.
     name : the file's stem, never a path.
     notes : what the reader has to say;  paint : colours of the faces, None where there are none.
+    blockers : where the file tells a slicer to make no supports, each as vertices (n, 3) in file
+    coordinates and faces (m, 3).
     """
 
     vertices: Float
@@ -104,6 +106,7 @@ class Model:
     name: str
     notes: tuple[ReadNote, ...] = ()
     paint: Paint | None = None
+    blockers: tuple[tuple[Float, Int], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -114,7 +114,12 @@ class CheckContext:
 
 
 def context_of_solid(
-    part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
+    part: Manifold,
+    stability: Stability,
+    lean: Lean,
+    repair: Repair,
+    raw: Model | None = None,
+    blocker: Manifold | None = None,
 ) -> CheckContext:
     """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside.
 
@@ -137,4 +142,5 @@ def context_of_solid(
         repair=repair,
         hollowed=False,
         raw=raw,
+        blocker=blocker,
     )

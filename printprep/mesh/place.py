@@ -84,6 +84,7 @@ def place(
         name=raw.name,
         notes=raw.notes,
         paint=raw.paint,
+        blockers=raw.blockers,
     )
 
 

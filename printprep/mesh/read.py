@@ -62,6 +62,8 @@ class RawMesh:
     from_file : (4, 4) float64, coordinates in the file (its unit, its axes) → ``vertices``.
     up_hint : "+y" where the format defines y as up (``vertices`` are turned already), else None.
     notes : what the reader has to say;  paint : colours of the faces, None where there are none.
+    blockers : where the file tells a slicer to make no supports, each as vertices (n, 3) in file
+    coordinates and faces (m, 3).
     """
 
     vertices: Float
@@ -71,6 +73,7 @@ class RawMesh:
     up_hint: str | None = None
     notes: tuple[ReadNote, ...] = ()
     paint: Paint | None = None
+    blockers: tuple[tuple[Float, Int], ...] = ()
 
 
 def read_mesh(path: Path, units: str | None = None, *, choice: Choice = ALL) -> RawMesh:
@@ -178,7 +181,8 @@ def _read_3mf(path: Path, choice: Choice) -> RawMesh:
     solid = subtracted(found, str(path)) if found.negatives else found
     raw = _raw(solid.vertices, solid.faces, path.stem, np.eye(3), str(path), None, solid.paint)
     from_file = raw.from_file @ np.diag([*3 * [found.unit_mm], 1.0])
-    return replace(raw, from_file=from_file, notes=found.notes)
+    blockers = tuple((one.vertices / found.unit_mm, one.faces) for one in found.blockers)
+    return replace(raw, from_file=from_file, notes=found.notes, blockers=blockers)
 
 
 def _raw(

@@ -11,7 +11,10 @@ from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from printprep.check.context import CheckContext
+    from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.types import Finding, Lean
 
@@ -60,7 +63,26 @@ def check(
     solid, part = prepared.solid, prepared.solid.manifold
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)
-        context = context_of_solid(part, part_stability, requested, solid.repair, prepared.model)
+        context = context_of_solid(
+            part, part_stability, requested, solid.repair, prepared.model, _blocker(prepared)
+        )
         read = reading_findings(prepared.model.notes)
         findings = sorted_findings([*read, *run_rules(context, settings)])
     return Checked(context, findings, settings)
+
+
+def _blocker(prepared: Prepared) -> Manifold | None:
+    """Where the file tells a slicer to make no supports, on the bed; None where it does not.
+
+    A blocker that is no solid blocks nothing that a slicer could rely on, so it is left out.
+    """
+    from printprep.check.walls import united
+    from printprep.mesh.measure import from_arrays
+
+    to_bed = prepared.solid.placement
+    solids = [
+        from_arrays(vertices @ to_bed[:3, :3].T + to_bed[:3, 3], faces)
+        for vertices, faces in prepared.model.blockers
+    ]
+    sound = [solid for solid in solids if solid.volume() > 0]
+    return united(sound) if sound else None

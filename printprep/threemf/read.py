@@ -50,8 +50,8 @@ _AGAIN = "Export the model again."
 
 
 @dataclass(frozen=True, eq=False)
-class Negative:
-    """A volume that is subtracted from one object.
+class VolumeMesh:
+    """A volume of one object that is not material: a negative volume or a support blocker.
 
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64;  span : number in ``ThreeMF.spans`` of the
     object.
@@ -72,7 +72,8 @@ class ThreeMF:
     attachments : printprep's JSON by part name, where printprep wrote the file;
     unit_mm : length of one unit of the file, already applied to ``vertices``;
     spans : for each object on the bed, its first face and the one after its last;
-    negatives : not yet subtracted;  notes : what the user must know;
+    negatives : not yet subtracted;  blockers : where the slicer makes no supports;
+    notes : what the user must know;
     paint : colours of the faces, None where there are none.
     """
 
@@ -82,7 +83,8 @@ class ThreeMF:
     attachments: Mapping[str, bytes] = field(default_factory=dict)
     unit_mm: float = 1.0
     spans: tuple[tuple[int, int], ...] = ()
-    negatives: tuple[Negative, ...] = ()
+    negatives: tuple[VolumeMesh, ...] = ()
+    blockers: tuple[VolumeMesh, ...] = ()
     notes: tuple[ReadNote, ...] = ()
     paint: Paint | None = None
 
@@ -125,6 +127,7 @@ def read_3mf(
         build.unit_mm,
         tuple(build.spans),
         tuple(build.negatives),
+        tuple(build.blockers),
         build.notes(ours=bool(attachments)),
         build.book.paint(build.labels),
     )
@@ -134,13 +137,14 @@ def read_3mf(
 class _Mesh:
     """What an object's own mesh is, in the file's unit.
 
-    vertices : (n, 3);  faces : (m, 3);  labels : (m,);  negatives : name, vertices and faces.
+    vertices : (n, 3);  faces : (m, 3);  labels : (m,);  apart : negative volumes and support
+    blockers, each with its role, vertices and faces.
     """
 
     vertices: Float
     faces: Int
     labels: Int
-    negatives: tuple[tuple[str, Float, Int], ...]
+    apart: tuple[tuple[VolumeRole, Float, Int], ...]
     left_out: tuple[VolumeRole, ...]
 
 
@@ -157,7 +161,8 @@ class _Build:
         self.labels: list[Int] = []
         self.names: list[str] = []
         self.spans: list[tuple[int, int]] = []
-        self.negatives: list[Negative] = []
+        self.negatives: list[VolumeMesh] = []
+        self.blockers: list[VolumeMesh] = []
         self.book = StyleBook()
         self.unit_mm = 1.0
         self._given_mm = unit_mm
@@ -178,7 +183,7 @@ class _Build:
             part = chosen.part or self._root
             self.names.append(self._name(chosen))
             first = self._face_count
-            self._place(part, chosen, to_mm, chosen.object_id, 0, negative=None)
+            self._place(part, chosen, to_mm, chosen.object_id, 0, apart=None)
             self.spans.append((first, self._face_count))
 
     def notes(self, *, ours: bool) -> tuple[ReadNote, ...]:
@@ -349,11 +354,11 @@ class _Build:
         top_id: str,
         depth: int,
         *,
-        negative: str | None,
+        apart: VolumeRole | None,
     ) -> None:
         """Add an object and its components; outer : (4, 4), place of what holds it, row vectors.
 
-        negative : its name, where all of it is a negative volume.
+        apart : the role of a mesh that is not material.
         """
         self._placed += 1
         if depth > _DEPTH_MAX or self._placed > _PLACED_MAX:
@@ -366,35 +371,38 @@ class _Build:
         with np.errstate(over="ignore", invalid="ignore"):
             matrix = np.column_stack([here.transform, [0.0, 0.0, 0.0, 1.0]]) @ outer  # row vectors
         if found.indices:
-            self._add(part, here.object_id, matrix, negative)
+            self._add(part, here.object_id, matrix, apart)
         for component in found.components:
             role = self._project.components.get((top_id, component.object_id))
-            inner = negative
-            if role is not None and role.purpose == "negative":
-                inner = role.name
-            elif role is not None and role.purpose != "part":
+            inner = apart
+            if role is not None and role.purpose not in ("part", "negative"):
                 self._left_out.append(role)
-                continue
-            self._place(
-                component.part or part, component, matrix, top_id, depth + 1, negative=inner
-            )
+                if role.purpose != "blocker":
+                    continue
+            if role is not None and role.purpose != "part":
+                inner = role
+            self._place(component.part or part, component, matrix, top_id, depth + 1, apart=inner)
 
-    def _add(self, part: str, object_id: str, matrix: Float, negative: str | None) -> None:
-        """Add the mesh of an object; matrix : (4, 4), file's unit → mm, for row vectors."""
+    def _add(self, part: str, object_id: str, matrix: Float, apart: VolumeRole | None) -> None:
+        """Add the mesh of an object; matrix : (4, 4), file's unit → mm, for row vectors.
+
+        apart : the role of a mesh that is not material.
+        """
         mesh = self._mesh(part, object_id)
         self._left_out += mesh.left_out
         with np.errstate(over="ignore", invalid="ignore"):
             mirrored = bool(np.linalg.det(matrix[:3, :3]) < 0.0)
         span = len(self.spans)
-        minus = [*mesh.negatives]
-        if negative is not None:
-            minus.append((negative, mesh.vertices, mesh.faces))
-        for name, vertices, faces in minus:
+        others = [*mesh.apart]
+        if apart is not None:
+            others.append((apart, mesh.vertices, mesh.faces))
+        for role, vertices, faces in others:
             self._count(len(faces))
             moved = self._moved(object_id, vertices, matrix)
             turned = faces[:, ::-1] if mirrored else faces
-            self.negatives.append(Negative(printable(name), moved, turned, span))
-        if negative is not None or not len(mesh.faces):
+            kept = self.blockers if role.purpose == "blocker" else self.negatives
+            kept.append(VolumeMesh(printable(role.name), moved, turned, span))
+        if apart is not None or not len(mesh.faces):
             return
         self._count(len(mesh.faces))
         moved = self._moved(object_id, mesh.vertices, matrix)
@@ -453,7 +461,7 @@ class _Build:
         """The mesh of an object without the volumes that are not material."""
         spans = self._project.spans.get(object_id, ()) if part == self._root else ()
         printed = np.ones(len(faces), dtype=bool)
-        negatives: list[tuple[str, Float, Int]] = []
+        apart: list[tuple[VolumeRole, Float, Int]] = []
         left_out: list[VolumeRole] = []
         covered = 0
         for span in spans:
@@ -469,10 +477,10 @@ class _Build:
             printed[first:end] = False
             if span.role.purpose != "negative":
                 left_out.append(span.role)
-            elif end > first:
-                negatives.append((span.role.name, *_compact(points, faces[first:end])))
+            if span.role.purpose in ("negative", "blocker") and end > first:
+                apart.append((span.role, *_compact(points, faces[first:end])))
         vertices, kept = _compact(points, faces[printed])
-        return _Mesh(vertices, kept, labels[printed], tuple(negatives), tuple(left_out))
+        return _Mesh(vertices, kept, labels[printed], tuple(apart), tuple(left_out))
 
     def _object(self, part: str, object_id: str) -> ParsedObject:
         objects = self._model(part).objects
