@@ -63,8 +63,9 @@ def check(
     solid, part = prepared.solid, prepared.solid.manifold
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)
+        blocker = _blocker(prepared)
         context = context_of_solid(
-            part, part_stability, requested, solid.repair, prepared.model, _blocker(prepared)
+            part, part_stability, requested, solid.repair, prepared.model, blocker
         )
         read = reading_findings(prepared.model.notes)
         findings = sorted_findings([*read, *run_rules(context, settings)])
@@ -77,12 +78,12 @@ def _blocker(prepared: Prepared) -> Manifold | None:
     A blocker that is no solid blocks nothing that a slicer could rely on, so it is left out.
     """
     from printprep.check.walls import united
-    from printprep.mesh.measure import from_arrays
+    from printprep.mesh.measure import try_manifold
 
     to_bed = prepared.solid.placement
-    solids = [
-        from_arrays(vertices @ to_bed[:3, :3].T + to_bed[:3, 3], faces)
-        for vertices, faces in prepared.model.blockers
-    ]
-    sound = [solid for solid in solids if solid.volume() > 0]
+    sound = []
+    for vertices, faces in prepared.model.blockers:
+        solid, status = try_manifold(vertices @ to_bed[:3, :3].T + to_bed[:3, 3], faces)
+        if status == "NoError" and solid.volume() > 0:
+            sound.append(solid)
     return united(sound) if sound else None

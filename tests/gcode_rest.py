@@ -1,0 +1,92 @@
+"""How far printed lines stand out over the lines below, measured on the extrusion in a G-code.
+
+Not printprep's own reader: every extruding move is a line as wide as the slicer says (;WIDTH:), and
+a line's axis and both its sides are sampled.  What counts is the distance of a sample, seen from
+above, to the nearest line of the layer below, 0 over it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Float = NDArray[np.float64]
+STEP_MM = 0.1
+_NOT_PART = ("Skirt", "Support", "Brim", "Custom", "Wipe")
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """The extruding moves of one layer: start, end (n, 2) mm; width (n,) mm."""
+
+    z_mm: float
+    start: Float
+    end: Float
+    width: Float
+
+    def samples(self) -> tuple[Float, Float, Float]:
+        """(m, 2) points on the axes, (m, 2) unit normals, (m,) widths."""
+        way = self.end - self.start
+        length = np.linalg.norm(way, axis=1)
+        count = np.maximum(np.ceil(length / STEP_MM).astype(int), 1) + 1
+        owner = np.repeat(np.arange(len(count)), count)
+        place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        share = place / (count - 1)[owner]
+        along = way / length[:, None]
+        normal = np.column_stack([-along[:, 1], along[:, 0]])[owner]
+        return self.start[owner] + share[:, None] * way[owner], normal, self.width[owner]
+
+
+def layers_of(gcode: Path) -> list[Lines]:
+    """The lines of the part, layer by layer."""
+    x = y = z = e = 0.0
+    width, relative, counts = 0.45, False, True
+    rows: dict[float, list[tuple[float, ...]]] = {}
+    for line in gcode.read_text(encoding="utf-8").splitlines():
+        if line.startswith(";TYPE:"):
+            counts = not line.removeprefix(";TYPE:").startswith(_NOT_PART)
+        elif line.startswith(";WIDTH:"):
+            width = float(line.removeprefix(";WIDTH:"))
+        code, _, rest = line.partition(";")[0].partition(" ")
+        if code in ("M82", "M83"):
+            relative = code == "M83"
+        elif code == "G92":
+            e = next((float(word[1:]) for word in rest.split() if word[0] == "E"), e)
+        elif code in ("G0", "G1"):
+            words = {word[0]: float(word[1:]) for word in rest.split()}
+            new_x, new_y, z = words.get("X", x), words.get("Y", y), words.get("Z", z)
+            used = 0.0
+            if "E" in words:
+                used = words["E"] if relative else words["E"] - e
+                e = words["E"]
+            if counts and used > 0 and (new_x, new_y) != (x, y):
+                rows.setdefault(round(z, 4), []).append((x, y, new_x, new_y, width))
+            x, y = new_x, new_y
+    return [
+        Lines(z, *(np.array(rows[z])[:, columns] for columns in ([0, 1], [2, 3], 4)))
+        for z in sorted(rows)
+    ]
+
+
+def standing_out(layers: list[Lines]) -> tuple[Float, Float]:
+    """(n, 3) mm, samples of axes and sides of all lines but the first layer's, and (n,) mm, how far
+    each lies from the lines below."""
+    places, out = [], []
+    for below, here in zip(layers, layers[1:], strict=False):
+        axis, _, lower_width = below.samples()
+        points, normal, width = here.samples()
+        sides = [points + side * normal * width[:, None] / 2 for side in (-1, 0, 1)]
+        samples = np.concatenate(sides)
+        far = np.zeros(len(samples))
+        # Lines of one width are one tree: the nearest axis is then the nearest line.
+        far[:] = np.inf
+        for each in np.unique(lower_width):
+            tree = cKDTree(axis[lower_width == each])
+            far = np.minimum(far, tree.query(samples)[0] - each / 2)
+        places.append(np.column_stack([samples, np.full(len(samples), here.z_mm)]))
+        out.append(np.maximum(far, 0.0))
+    return np.concatenate(places), np.concatenate(out)
