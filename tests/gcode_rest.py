@@ -8,6 +8,7 @@ above, to the nearest line of the layer below, 0 over it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -76,7 +77,7 @@ def standing_out(layers: list[Lines]) -> tuple[Float, Float]:
     """(n, 3) mm, samples of axes and sides of all lines but the first layer's, and (n,) mm, how far
     each lies from the lines below."""
     places, out = [], []
-    for below, here in zip(layers, layers[1:], strict=False):
+    for below, here in pairwise(layers):
         axis, _, lower_width = below.samples()
         points, normal, width = here.samples()
         sides = [points + side * normal * width[:, None] / 2 for side in (-1, 0, 1)]
