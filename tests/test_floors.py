@@ -32,7 +32,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.cavity", "printprep.gcode", "printprep.render"),
     ("printprep.overhang", "printprep.thickness", "printprep.stand", "printprep.grid"),
     ("printprep.mesh", "printprep.slicer"),
-    ("printprep.threemf", "printprep.profiles"),
+    ("printprep.threemf", "printprep.profiles", "printprep.bgcode"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
     ("printprep.input_file",),
     (

@@ -78,6 +78,7 @@ _KINDS = (
     Kind("tilt", "deg", _ERROR, "a part that falls over"),
     # the print, measured in its G-code
     Kind("another-print", None, _WARNING, "a comparison with the wrong part"),
+    Kind("features-unknown", None, _WARNING, "a skirt or a support taken for a foot"),
     Kind("filament-count", "mm3", _WARNING, "figures that the slicer's own count contradicts"),
     Kind("filled-cavity", "mm3", _ERROR, "a cavity that the slicer prints solid"),
     Kind("printed-centre-of-mass", "mm", _WARNING, "a print that balances differently"),

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _TILE = 256  # outlines united at a time: the work grows faster than their number
 SAME_LAYER_MM = 1e-3  # G-code has three decimals
+_REPEATS_FROM = 1 << 17  # beads, before which repeats are not looked for
 _ROUND = 16  # corners of the circle at the end of a bead: its area is 2.6 % too small
 
 
@@ -27,16 +28,29 @@ class LowestBeads:
 
     z_mm: float = np.inf
     _beads: list[Float] = field(default_factory=list)
+    _size: int = 0
+    _unique: int = _REPEATS_FROM  # so many were left when repeats were last taken out
 
     def add(self, beads: Float) -> None:
         """Add beads (k, 7) of a piece of the file; only those on the lowest layer are kept."""
         lowest = float(beads[:, 4].min())
         if lowest < self.z_mm - SAME_LAYER_MM:
             self._beads.clear()
+            self._size, self._unique = 0, _REPEATS_FROM
             self.z_mm = lowest
         kept = beads[beads[:, 4] <= self.z_mm + SAME_LAYER_MM]
         if len(kept):
             self._beads.append(kept)
+            self._size += len(kept)
+            if self._size > 2 * self._unique:
+                self._beads = [np.unique(self.beads, axis=0)]
+                self._size = len(self._beads[0])
+                self._unique = max(self._size, _REPEATS_FROM)
+
+    @property
+    def count(self) -> int:
+        """How many they are; those that repeat count at most once from time to time."""
+        return self._size
 
     @property
     def beads(self) -> Float:

@@ -137,7 +137,13 @@ def _bed(settings: Mapping[str, str]) -> list[float] | None:
     height = numbers(settings, "max_print_height")
     if len(corners) < 3 or not height or any(len(corner) != 2 for corner in corners):
         return None
-    extent = np.ptp(np.array(corners, dtype=float), axis=0)
+    try:
+        places = np.array(corners, dtype=float)
+    except ValueError as error:
+        raise InputError(
+            "The G-code is unchanged: its bed_shape holds no numbers.", "Slice the model again."
+        ) from error
+    extent = np.ptp(places, axis=0)
     return [float(extent[0]), float(extent[1]), height[0]]
 
 
