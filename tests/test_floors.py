@@ -37,6 +37,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.input_file",),
     (
         "printprep.arrays",
+        "printprep.children",
         "printprep.errors",
         "printprep.process",
         "printprep.processors",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from printprep.types import Finding, Severity, Unit
+from printprep.wording import printable
 
 
 @dataclass(frozen=True)
@@ -133,8 +134,8 @@ def finding(
     return Finding(
         rule=kind_id,
         severity=severity,
-        message=message,
-        fix=fix,
+        message=printable(message),
+        fix=None if fix is None else printable(fix),
         value=value,
         limit=limit,
         unit=kind.unit if value is not None or limit is not None else None,

@@ -1,5 +1,15 @@
 """The command line, one thin file for each command.  ``main`` is the installed program."""
 
-from printprep.cli.run import main
+from __future__ import annotations
 
-__all__ = ["main"]
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the program and exit with its exit code.
+
+    From here on a signal ends the run in order; nothing is imported before.
+    """
+    from printprep.cli.supervise import supervised
+
+    supervised(arguments)

@@ -6,38 +6,48 @@ exception is called a defect; -v shows its traceback.
 
 from __future__ import annotations
 
+import errno
 import re
+import signal
 import sys
 from collections.abc import Sequence
 
 import click
 
-from printprep.errors import OutputError, PrintprepError, UsageError
+from printprep.cli.streams import StreamError, guard_streams
+from printprep.cli.supervise import Terminated, sentence_of
+from printprep.errors import InputError, OutputError, PrintprepError, UsageError
+from printprep.wording import printable
 
 _INTERRUPTED = 130
 _DEFECT = 70
+_NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS})
+_LESS_MEMORY = (
+    "Use a model with fewer triangles or a lower --resolution, or a machine with more memory."
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the program and exit with its exit code."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # a pipe in a code page must not break on a degree sign
-            stream.reconfigure(errors="replace")
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+    guard_streams()
+    code = run(sys.argv[1:] if arguments is None else arguments)
+    try:
+        sys.stdout.flush()
+    except StreamError as error:
+        code = _report(error.code, error.message, error.hint, error.exit_code, as_json=False)
+    sys.exit(code)
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command line ``arguments`` (without the program's name); return the exit code."""
     from printprep.cli.app import printprep
 
-    # Read here and not by click: an error in the arguments must be reported in this form too.
-    options = [*arguments, "--"]
-    options = options[: options.index("--")]
-    as_json = "--json" in options
-    verbose = any(re.fullmatch(r"-[a-z]*v[a-z]*|--verbose", option) for option in options)
+    as_json, verbose = _forms(arguments)
     try:
         code = printprep.main(list(arguments), prog_name="printprep", standalone_mode=False)
         return code if isinstance(code, int) else 0
+    except StreamError as error:
+        return _report(error.code, error.message, error.hint, error.exit_code, as_json=False)
     except PrintprepError as error:
         return _report(error.code, error.message, error.hint, error.exit_code, as_json)
     except click.FileError as error:
@@ -46,7 +56,17 @@ def run(arguments: Sequence[str]) -> int:
         return _report("usage", *_usage(error), UsageError.exit_code, as_json)
     except (click.Abort, KeyboardInterrupt):
         return _report("interrupted", "Interrupted.", None, _INTERRUPTED, as_json)
+    except Terminated as error:
+        return report_signal(error.exit_code - 128, arguments)
+    except MemoryError:
+        return _out_of_memory(as_json)
     except Exception as error:  # the outermost boundary: anything else is a defect of printprep
+        if isinstance(error, OSError) and error.errno in _NO_SPACE:
+            message = f"There is no space for a file: {error.strerror}."
+            hint = "Free some space, or name a folder for temporary files in the variable TMPDIR."
+            return _report("output", message, hint, OutputError.exit_code, as_json)
+        if isinstance(error, ImportError | OSError) and _is_about_memory(error):
+            return _out_of_memory(as_json)
         if verbose:
             import traceback
 
@@ -56,6 +76,57 @@ def run(arguments: Sequence[str]) -> int:
         return _report("defect", f"This is a defect of printprep: {name}", hint, _DEFECT, as_json)
 
 
+def report_signal(number: int, arguments: Sequence[str]) -> int:
+    """Tell that a signal ended the run; return the exit code."""
+    return _report("interrupted", sentence_of(number), None, 128 + number, _forms(arguments)[0])
+
+
+def report_crash(number: int, arguments: Sequence[str]) -> int:
+    """Tell that a run ended by a signal that nobody sent it on purpose; return the exit code."""
+    as_json, _ = _forms(arguments)
+    if number == signal.SIGKILL or (number in _ABORTS and _memory_is_limited()):
+        return _out_of_memory(as_json)
+    name = signal.Signals(number).name
+    message = f"This is a defect of printprep or of a library: it crashed ({name})."
+    return _report("defect", message, "Report it, with the model.", _DEFECT, as_json)
+
+
+_ABORTS = (signal.SIGABRT, signal.SIGSEGV, getattr(signal, "SIGBUS", signal.SIGSEGV))
+
+
+def _forms(arguments: Sequence[str]) -> tuple[bool, bool]:
+    """Whether the arguments ask for JSON, and for tracebacks.
+
+    Read here and not by click: an error in the arguments must be reported in this form too.
+    """
+    options = [*arguments, "--"]
+    options = options[: options.index("--")]
+    verbose = any(re.fullmatch(r"-[a-z]*v[a-z]*|--verbose", option) for option in options)
+    return "--json" in options, verbose
+
+
+def _memory_is_limited() -> bool:
+    """Whether this process may not take all the memory there is (ulimit -v)."""
+    try:
+        import resource
+    except ImportError:  # Windows has no such limits
+        return False
+    limits = (resource.RLIMIT_AS, resource.RLIMIT_DATA)
+    return any(resource.getrlimit(limit)[0] != resource.RLIM_INFINITY for limit in limits)
+
+
+def _is_about_memory(error: Exception) -> bool:
+    """Whether a library could not be loaded for want of memory; the loader says so in words."""
+    if isinstance(error, OSError) and error.errno == errno.ENOMEM:
+        return True
+    return re.search(r"cannot allocate memory|failed to map segment", str(error), re.I) is not None
+
+
+def _out_of_memory(as_json: bool) -> int:
+    message = "The memory of this machine, or of its limit, is not enough for this run."
+    return _report("input", message, _LESS_MEMORY, InputError.exit_code, as_json)
+
+
 def _usage(error: click.ClickException) -> tuple[str, str | None]:
     context = getattr(error, "ctx", None)
     hint = None if context is None else f"`{context.command_path} --help` shows the usage."
@@ -63,7 +134,8 @@ def _usage(error: click.ClickException) -> tuple[str, str | None]:
 
 
 def _report(code: str, message: str, hint: str | None, exit_code: int, as_json: bool) -> int:
-    message = " ".join(message.split())
+    message = printable(" ".join(message.split()))
+    hint = None if hint is None else printable(hint)
     if as_json:
         from printprep.output.numbers import to_text
 

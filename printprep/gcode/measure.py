@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.errors import InputError
+from printprep.errors import InputError, ToolError
 from printprep.gcode.features import LEFT_OUT
 
 if TYPE_CHECKING:
@@ -55,6 +55,26 @@ def measure_gcode(
     if is_binary_file(path):
         _refuse_half(path, printed)
     return printed
+
+
+def measure_sliced(
+    path: Path,
+    slicer: str,
+    *,
+    cavities: Sequence[Manifold] = (),
+    bodies: Sequence[Manifold] = (),
+) -> Printed:
+    """As ``measure_gcode``, for a file that a slicer just wrote; slicer : its name.
+
+    Raises ToolError where it is no G-code that can be measured.
+    """
+    try:
+        return measure_gcode(path, cavities=cavities, bodies=bodies)
+    except InputError as error:
+        raise ToolError(
+            f"{slicer} wrote G-code that cannot be measured: {error.message}",
+            "Slice the file by hand once, to see what it prints.",
+        ) from error
 
 
 def _refuse_half(path: Path, printed: Printed) -> None:

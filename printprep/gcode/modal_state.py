@@ -19,9 +19,7 @@ _HEAD_BYTES = 256  # of a comment: labels, keys and names of slicers stand at it
 _DIGITS_MAX = 9  # of the number of a code
 _BEAD_MM_MAX = 100.0  # no nozzle prints wider or higher: such a number is damage
 
-_LABEL = re.compile(
-    rb";\s*(TYPE|FEATURE|segType|WIDTH|LINE_WIDTH|HEIGHT|LAYER_HEIGHT)\s*:\s*(.*)"
-)
+_LABEL = re.compile(rb";\s*(TYPE|FEATURE|segType|WIDTH|LINE_WIDTH|HEIGHT|LAYER_HEIGHT)\s*:\s*(.*)")
 _SIMPLIFY3D = re.compile(rb";\s*feature (\S.*)")
 _SIMPLIFY3D_TOOL = re.compile(rb"; tool H(\S+) W(\S+)")
 _KISSLICER = re.compile(rb"; '([^']+) Path'")
@@ -206,9 +204,10 @@ class StateTracker:
         if head in _BEGINS:
             self.awaited.add(_BEGINS[head])
         whole = _WHOLE_HEAD.match(head)
-        if whole is not None and self.producer is None:
-            if (_small(whole[1]), _small(whole[2])) >= _MARKS_SINCE:
-                self.awaited.add(b"; prusaslicer_config = end")
+        if whole is None or self.producer is not None:
+            return
+        if (_small(whole[1]), _small(whole[2])) >= _MARKS_SINCE:
+            self.awaited.add(b"; prusaslicer_config = end")
 
     def _setting(self, line: bytes) -> None:
         """Keep a setting: ``; key = value``, ``; key: value``, or ``;KEY:value`` as Cura writes."""

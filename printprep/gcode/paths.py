@@ -149,9 +149,7 @@ def _straightened(made: Stretches, kind: Int, words: Float) -> Iterator[Stretche
     arc = kind >= 2
     centre = np.zeros((len(kind), 2))
     turn = np.zeros(len(kind))
-    centre[arc], turn[arc] = _arcs(
-        made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc]
-    )
+    centre[arc], turn[arc] = _arcs(made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc])
     pieces = np.ones(len(kind), dtype=np.int64)
     pieces[arc] = np.maximum(1, np.ceil(np.abs(turn[arc]) / np.radians(_TURN_DEG))).astype(np.int64)
     parts = np.flatnonzero(np.diff(np.cumsum(pieces) // _CHORDS_MAX, prepend=0))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from printprep.files import scratch_folder
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -85,8 +85,7 @@ def verify(
     settings = settings_for(computed, load)
     program = find_slicer(slicer)
     findings: list[Finding] = []
-    with tempfile.TemporaryDirectory(prefix="printprep-") as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         with progress.stage("slice"):
             printed, warnings = slice_and_measure(program, computed, settings, load, folder)
         findings += compare(computed, printed)
@@ -139,8 +138,9 @@ def slice_and_measure(
     folder: Path,
 ) -> tuple[Printed, tuple[str, ...]]:
     """The print of a part, and the slicer's warnings."""
-    from printprep.gcode.measure import measure_gcode
+    from printprep.gcode.measure import measure_sliced
 
     gcode = folder / "part.gcode"
     sliced = program.slice(part.file, gcode, settings, load)
-    return measure_gcode(gcode, cavities=part.cavities, bodies=part.bodies), sliced.warnings
+    printed = measure_sliced(gcode, program.name, cavities=part.cavities, bodies=part.bodies)
+    return printed, sliced.warnings
