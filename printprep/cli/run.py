@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import click
 
 from printprep.cli.streams import StreamError, guard_streams
-from printprep.cli.supervise import Terminated, sentence_of
+from printprep.cli.supervise import sentence_of
 from printprep.errors import InputError, OutputError, PrintprepError, UsageError
 from printprep.wording import printable
 
@@ -56,8 +56,6 @@ def run(arguments: Sequence[str]) -> int:
         return _report("usage", *_usage(error), UsageError.exit_code, as_json)
     except (click.Abort, KeyboardInterrupt):
         return _report("interrupted", "Interrupted.", None, _INTERRUPTED, as_json)
-    except Terminated as error:
-        return report_signal(error.exit_code - 128, arguments)
     except MemoryError:
         return _out_of_memory(as_json)
     except Exception as error:  # the outermost boundary: anything else is a defect of printprep

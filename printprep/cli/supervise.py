@@ -16,23 +16,23 @@ import signal
 import sys
 from collections.abc import Sequence
 from types import FrameType
+from typing import NoReturn
 
 GRACE_S = 0.6  # for a command to end by itself after a signal
 _SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
-_MEMORY_SIGNALS = (signal.SIGABRT, signal.SIGSEGV)
 
 
 class Terminated(BaseException):
-    """A signal that ends the program, other than Ctrl-C; ``exit_code`` is 128 + its number."""
+    """A signal that ends the program, by its number."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
-        self.exit_code = 128 + number
+        self.number = number
 
 
-def supervised(arguments: Sequence[str] | None) -> None:
+def supervised(arguments: Sequence[str] | None) -> NoReturn:
     """Run the command line, and exit with its exit code."""
     if sys.platform != "linux":
         _work(arguments)
@@ -40,38 +40,61 @@ def supervised(arguments: Sequence[str] | None) -> None:
     heard: list[int] = []
     _on_signals(lambda number, _frame: heard.append(number))  # until both know what to do
     token = os.urandom(8).hex()
+    told, tell = os.pipe()
     child = os.fork()
     if child == 0:
+        os.close(told)
         _end_with(parent)
         from printprep.children import SESSION_VARIABLE
 
         os.environ[SESSION_VARIABLE] = token
-        _work(arguments, heard)
-    _wait_for(child, token, heard, sys.argv[1:] if arguments is None else arguments)
+        _work(arguments, heard, tell)
+    os.close(tell)
+    _wait_for(child, token, told, heard, sys.argv[1:] if arguments is None else arguments)
 
 
-def _work(arguments: Sequence[str] | None, heard: Sequence[int] = ()) -> None:
-    """Run the command line in this process.  heard : signals that came before this."""
-    code = 0
+def _work(
+    arguments: Sequence[str] | None, heard: Sequence[int] = (), tell: int | None = None
+) -> NoReturn:
+    """Run the command line in this process, and exit.
+
+    heard : signals that came before this;  tell : where it is told that a signal was reported.
+    """
     try:
+        sys.unraisablehook = _not_lost
         _on_signals(_stop)
         if heard:
             _stop(heard[0], None)
         from printprep.cli.run import main
 
         main(arguments)
-    except KeyboardInterrupt:
-        code = _interrupted(signal.SIGINT)
+        sys.exit(0)
     except Terminated as error:
-        code = _interrupted(error.exit_code - 128)
-    sys.exit(code)
+        number = error.number
+    # The report is short, and what the run held is put away: the interpreter need not be ended.
+    if tell is not None:
+        os.write(tell, b".")
+    from printprep.cli.run import report_signal
+
+    code = report_signal(number, sys.argv[1:] if arguments is None else arguments)
+    with contextlib.suppress(Exception):
+        sys.stdout.flush()
+        sys.stderr.flush()
+    os._exit(code)
 
 
-def _interrupted(number: int) -> int:
-    """Say on stderr that a signal ended a run that had not begun, and return its exit code."""
-    with contextlib.suppress(OSError):
-        os.write(2, f"printprep: error: {sentence_of(number)}\n".encode())
-    return 128 + number
+def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
+    """Where a signal came in a callback, which can pass no error on, let it come again."""
+    if isinstance(unraisable.exc_value, Terminated) and hasattr(signal, "setitimer"):
+        number = unraisable.exc_value.number
+
+        def again(_number: int, _frame: FrameType | None) -> None:
+            raise Terminated(number)
+
+        signal.signal(signal.SIGALRM, again)
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
+    else:
+        sys.__unraisablehook__(unraisable)
 
 
 def sentence_of(number: int) -> str:
@@ -85,8 +108,6 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     """End the run once: while it ends, further signals do not disturb it."""
     for each in _SIGNALS:
         signal.signal(each, signal.SIG_IGN)
-    if number == signal.SIGINT:
-        raise KeyboardInterrupt
     raise Terminated(number)
 
 
@@ -107,8 +128,13 @@ def _end_with(parent: int) -> None:
         os.kill(os.getpid(), signal.SIGTERM)
 
 
-def _wait_for(child: int, token: str, heard: list[int], arguments: Sequence[str]) -> None:
-    """Wait for the command, pass signals on to it, and exit as it did."""
+def _wait_for(
+    child: int, token: str, told: int, heard: list[int], arguments: Sequence[str]
+) -> NoReturn:
+    """Wait for the command, pass signals on to it, and exit as it did.
+
+    told : where it tells that it reported the signal itself.
+    """
     ended = False
 
     def pass_on(number: int, _frame: FrameType | None) -> None:
@@ -134,8 +160,11 @@ def _wait_for(child: int, token: str, heard: list[int], arguments: Sequence[str]
         _remove_rests(child, token)
     if code >= 0:
         os._exit(code)
-    number = heard[0] if heard else -code
-    os._exit(_told(number, by_request=bool(heard), arguments=arguments))
+    if not heard:
+        os._exit(_told(-code, by_request=False, arguments=arguments))
+    if os.read(told, 1):
+        os._exit(128 + heard[0])
+    os._exit(_told(heard[0], by_request=True, arguments=arguments))
 
 
 def _remove_rests(child: int, token: str) -> None:
@@ -156,5 +185,7 @@ def _remove_rests(child: int, token: str) -> None:
 def _told(number: int, *, by_request: bool, arguments: Sequence[str]) -> int:
     """Tell how a command ended that could not tell it itself; return the exit code."""
     from printprep.cli.run import report_crash, report_signal
+    from printprep.cli.streams import guard_streams
 
+    guard_streams()
     return (report_signal if by_request else report_crash)(number, arguments)
