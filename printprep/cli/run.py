@@ -14,14 +14,15 @@ from collections.abc import Sequence
 
 import click
 
+from printprep.cli.signals import sentence_of
 from printprep.cli.streams import StreamError, guard_streams
-from printprep.cli.supervise import sentence_of
 from printprep.errors import InputError, OutputError, PrintprepError, UsageError
 from printprep.wording import printable
 
 _INTERRUPTED = 130
 _DEFECT = 70
 _NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS})
+_MORE_SPACE = "Free some space, or name a folder for temporary files in the variable TMPDIR."
 _LESS_MEMORY = (
     "Use a model with fewer triangles or a lower --resolution, or a machine with more memory."
 )
@@ -61,8 +62,7 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:  # the outermost boundary: anything else is a defect of printprep
         if isinstance(error, OSError) and error.errno in _NO_SPACE:
             message = f"There is no space for a file: {error.strerror}."
-            hint = "Free some space, or name a folder for temporary files in the variable TMPDIR."
-            return _report("output", message, hint, OutputError.exit_code, as_json)
+            return _report("output", message, _MORE_SPACE, OutputError.exit_code, as_json)
         if isinstance(error, ImportError | OSError) and _is_about_memory(error):
             return _out_of_memory(as_json)
         if verbose:
@@ -79,17 +79,18 @@ def report_signal(number: int, arguments: Sequence[str]) -> int:
     return _report("interrupted", sentence_of(number), None, 128 + number, _forms(arguments)[0])
 
 
-def report_crash(number: int, arguments: Sequence[str]) -> int:
-    """Tell that a run ended by a signal that nobody sent it on purpose; return the exit code."""
+def report_crash(code: int, arguments: Sequence[str]) -> int:
+    """Tell that a library or the system ended the run; return the exit code.
+
+    code : how it ended, negative for a signal.
+    """
     as_json, _ = _forms(arguments)
-    if number == signal.SIGKILL or (number in _ABORTS and _memory_is_limited()):
+    # The system kills what takes too much memory; libraries that get too little give up.
+    if code == -signal.SIGKILL or _memory_is_limited():
         return _out_of_memory(as_json)
-    name = signal.Signals(number).name
-    message = f"This is a defect of printprep or of a library: it crashed ({name})."
+    how = f"it crashed ({signal.Signals(-code).name})" if code < 0 else f"it ended with code {code}"
+    message = f"This is a defect of printprep or of a library: {how}."
     return _report("defect", message, "Report it, with the model.", _DEFECT, as_json)
-
-
-_ABORTS = (signal.SIGABRT, signal.SIGSEGV, getattr(signal, "SIGBUS", signal.SIGSEGV))
 
 
 def _forms(arguments: Sequence[str]) -> tuple[bool, bool]:

@@ -70,7 +70,7 @@ def _guarded(stream: TextIO | None, descriptor: int, name: str | None) -> TextIO
     raw = _Raw(descriptor, name)
     # A pipe in a code page must not break on a degree sign.
     return io.TextIOWrapper(
-        io.BufferedWriter(raw),
+        io.BufferedWriter(raw),  # type: ignore[type-var]
         encoding=encoding,
         errors="replace",
         line_buffering=name is None or raw.isatty(),

@@ -18,18 +18,12 @@ from collections.abc import Sequence
 from types import FrameType
 from typing import NoReturn
 
+from printprep.cli.signals import Terminated
+
 GRACE_S = 0.6  # for a command to end by itself after a signal
 _SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
-
-
-class Terminated(BaseException):
-    """A signal that ends the program, by its number."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
 
 
 def supervised(arguments: Sequence[str] | None) -> NoReturn:
@@ -58,7 +52,7 @@ def _work(
 ) -> NoReturn:
     """Run the command line in this process, and exit.
 
-    heard : signals that came before this;  tell : where it is told that a signal was reported.
+    heard : signals that came before this;  tell : where a byte is written before it ends in order.
     """
     try:
         sys.unraisablehook = _not_lost
@@ -68,9 +62,14 @@ def _work(
         from printprep.cli.run import main
 
         main(arguments)
-        sys.exit(0)
+    except SystemExit:
+        if tell is not None:
+            os.write(tell, b".")
+        raise
     except Terminated as error:
         number = error.number
+    else:
+        sys.exit(0)
     # The report is short, and what the run held is put away: the interpreter need not be ended.
     if tell is not None:
         os.write(tell, b".")
@@ -95,13 +94,6 @@ def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.01)
     else:
         sys.__unraisablehook__(unraisable)
-
-
-def sentence_of(number: int) -> str:
-    """How a run that a signal ended is told."""
-    if number == signal.SIGINT:
-        return "Interrupted."
-    return f"Ended by {signal.Signals(number).name}."
 
 
 def _stop(number: int, _frame: FrameType | None) -> None:
@@ -133,7 +125,7 @@ def _wait_for(
 ) -> NoReturn:
     """Wait for the command, pass signals on to it, and exit as it did.
 
-    told : where it tells that it reported the signal itself.
+    told : where a byte comes from it before it ends in order.
     """
     ended = False
 
@@ -158,13 +150,24 @@ def _wait_for(
     code = os.waitstatus_to_exitcode(status)
     if code < 0 or heard:
         _remove_rests(child, token)
-    if code >= 0:
+    in_order = _has_byte(told)
+    if code >= 0 and in_order:
         os._exit(code)
+    from printprep.cli.run import report_crash, report_signal
+    from printprep.cli.streams import guard_streams
+
+    guard_streams()
     if not heard:
-        os._exit(_told(-code, by_request=False, arguments=arguments))
-    if os.read(told, 1):
-        os._exit(128 + heard[0])
-    os._exit(_told(heard[0], by_request=True, arguments=arguments))
+        os._exit(report_crash(code, arguments))
+    os._exit(128 + heard[0] if in_order else report_signal(heard[0], arguments))
+
+
+def _has_byte(pipe: int) -> bool:
+    os.set_blocking(pipe, False)
+    try:
+        return bool(os.read(pipe, 1))
+    except BlockingIOError:  # another process still holds its other end
+        return False
 
 
 def _remove_rests(child: int, token: str) -> None:
@@ -180,12 +183,3 @@ def _remove_rests(child: int, token: str) -> None:
     with contextlib.suppress(OSError):
         for folder in Path(tempfile.gettempdir()).glob(f"{scratch_prefix(child)}*"):
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def _told(number: int, *, by_request: bool, arguments: Sequence[str]) -> int:
-    """Tell how a command ended that could not tell it itself; return the exit code."""
-    from printprep.cli.run import report_crash, report_signal
-    from printprep.cli.streams import guard_streams
-
-    guard_streams()
-    return (report_signal if by_request else report_crash)(number, arguments)
