@@ -10,6 +10,7 @@ import errno
 import re
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 
 import click
@@ -31,7 +32,10 @@ _LESS_MEMORY = (
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the program and exit with its exit code."""
     guard_streams()
-    code = run(sys.argv[1:] if arguments is None else arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if not _forms(arguments)[1]:  # libraries warn of their own code, which tells a user nothing
+        warnings.simplefilter("ignore")
+    code = run(arguments)
     try:
         sys.stdout.flush()
     except StreamError as error:

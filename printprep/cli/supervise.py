@@ -63,16 +63,14 @@ def _work(
 
         main(arguments)
     except SystemExit:
-        if tell is not None:
-            os.write(tell, b".")
+        _tell(tell)
         raise
     except Terminated as error:
         number = error.number
     else:
         sys.exit(0)
     # The report is short, and what the run held is put away: the interpreter need not be ended.
-    if tell is not None:
-        os.write(tell, b".")
+    _tell(tell)
     from printprep.cli.run import report_signal
 
     code = report_signal(number, sys.argv[1:] if arguments is None else arguments)
@@ -80,6 +78,13 @@ def _work(
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+def _tell(pipe: int | None) -> None:
+    """Write the byte that says that this process ends in order."""
+    if pipe is not None:
+        with contextlib.suppress(BrokenPipeError):  # the one who waits was killed
+            os.write(pipe, b".")
 
 
 def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:

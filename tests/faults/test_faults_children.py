@@ -51,7 +51,7 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     folder = tmp_path_factory.mktemp("part")
     model = folder / "block.stl"
-    model.write_bytes(to_bytes(Manifold.cube((30, 30, 30)), ".stl"))
+    model.write_bytes(to_bytes(Manifold.cube((8, 8, 12)), ".stl"))
     out = folder / "part.3mf"
     assert run_command(["hollow", str(model), "-o", str(out), "-q", "--resolution", "16"]) == 0
     return out
