@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import InputError
-from printprep.gcode.quoted import shortened
+from printprep.wording import shortened
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -190,9 +190,9 @@ def _words(
         wrong = int(np.argmin(sound))
         line = numbers[row[wrong]]
         begin_of, end_of = starts[row[wrong]], ends[row[wrong]]
-        text = shortened(bytes(data[begin_of : min(end_of, begin_of + 64)]))
+        text = shortened(bytes(data[begin_of:end_of]).decode("ascii", "replace"))
         raise InputError(
-            f"{where}, line {line}: {text!r} has a word without a valid number.",
+            f"{where}, line {line}: '{text}' has a word without a valid number.",
             "Slice the model again.",
         )
     words[row, _COLUMN[data[at]]] = values

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from printprep.errors import InputError
 from printprep.gcode.features import SIMPLIFY3D_BARE, UNLABELLED, feature_of
-from printprep.gcode.quoted import shortened
+from printprep.wording import shortened
 
 MM_PER_INCH = 25.4
 _TOOLS_MAX = 64  # higher numbers are the pseudo tools of BambuStudio (T255, T1000)
@@ -112,8 +112,9 @@ class StateTracker:
                 try:
                     changed = self.feed(line)
                 except LineError as error:
+                    text = shortened(line.decode("ascii", "replace"))
                     raise InputError(
-                        f"{self.name}, line {first_line + number}: {shortened(line)!r} {error}.",
+                        f"{self.name}, line {first_line + number}: '{text}' {error}.",
                         "Slice the model again.",
                     ) from error
                 if not changed:
