@@ -11,7 +11,7 @@ from printprep.bgcode.blocks import is_binary
 from printprep.bgcode.content import text_of
 from printprep.errors import InputError
 from printprep.files import reason_of
-from printprep.gcode.plate import ZIP_MAGIC, plate_text
+from printprep.threemf.plate import ZIP_MAGIC, plate_text
 
 _PIECE_BYTES = 4 << 20
 _LINE_BYTES_MAX = 16 << 20

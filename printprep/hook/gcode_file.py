@@ -19,8 +19,8 @@ from typing import IO, BinaryIO
 from printprep.bgcode.blocks import GCODE, STORED, gcode_block, is_binary, read_blocks, read_header
 from printprep.errors import InputError, OutputError, ToolError
 from printprep.files import reason_of, replacing
-from printprep.gcode.plate import ZIP_ERRORS, ZIP_MAGIC, plate_in
 from printprep.gcode.source import is_binary_file
+from printprep.threemf.plate import ZIP_ERRORS, ZIP_MAGIC, plate_in
 
 MARK = b"; printprep: "
 _TAIL_BYTES = 1 << 16

@@ -13,19 +13,21 @@ import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import BinaryIO
 
 from printprep.bgcode.blocks import MAGIC, is_binary
 from printprep.bgcode.content import settings_of
 from printprep.errors import InputError, UsageError
 from printprep.files import reason_of
+from printprep.threemf.plate import plate_text
 
 _LINE = re.compile(rb"^[;#\s]*post_process\s*=")
+_SLICED_PROJECT = ".gcode.3mf"
 _KEY = re.compile(r"[a-z][a-z0-9_]*")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _DENSITY = re.compile(rb"[;\s]*filament_density\s*=\s*([\d.,\s]+)")
 _VALUE_BYTES = 256
 _LINE_BYTES_MAX = 16 << 20
+_PIECE_BYTES = 1 << 20
 _CONFIG_SUFFIXES = (".config", ".ini", ".xml")
 _CONFIG_BYTES_MAX = 64 << 20
 
@@ -56,20 +58,12 @@ def without_commands(file: Path, folder: Path) -> Path:
     try:
         if suffix in (".stl", ".obj"):
             return file
-        if suffix == ".3mf":
+        if suffix == ".3mf" and not _is_sliced(file):
             return _clean_3mf(file, folder / f"loaded-{file.name}")
-        if not stat.S_ISREG(file.stat().st_mode):
-            raise InputError(f"{file} is not a plain file.", "Name an .ini or a G-code file.")
-        with file.open("rb") as source:
-            binary = is_binary(source.read(len(MAGIC)))
-            source.seek(0)
-            if binary:
-                target = folder / "loaded.ini"
-                target.write_bytes(_as_ini(settings_of(source, file.name)))
-                return target
-            target = folder / ("loaded.ini" if suffix == ".ini" else "loaded.gcode")
-            with target.open("wb") as sink:
-                sink.writelines(line for line in _lines(source) if not _LINE.match(line))
+        settings_only = suffix == ".ini" or _is_binary(file)
+        target = folder / ("loaded.ini" if settings_only else "loaded.gcode")
+        with target.open("wb") as sink:
+            sink.writelines(line for line in _config_lines(file) if not _LINE.match(line))
         return target
     except (OSError, zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
         raise InputError(f"{file.name} cannot be read: {error}.") from error
@@ -81,33 +75,51 @@ def sets_density(file: Path) -> bool:
     Raises InputError where it cannot be read.
     """
     try:
-        if not stat.S_ISREG(file.stat().st_mode):
-            raise InputError(f"{file} is not a plain file.", "Name an .ini or a G-code file.")
-        with file.open("rb") as source:
-            binary = is_binary(source.read(len(MAGIC)))
-            source.seek(0)
-            if binary:
-                value = settings_of(source, file.name).get("filament_density", "")
-                return _has_positive(value.encode("utf-8"))
-            found = (_DENSITY.match(line) for line in _lines(source))
-            return any(match is not None and _has_positive(match[1]) for match in found)
+        found = (_DENSITY.match(line) for line in _config_lines(file))
+        return any(match is not None and _has_positive(match[1]) for match in found)
     except OSError as error:
         raise InputError(f"{file} cannot be read: {reason_of(error)}.") from error
 
 
+def _config_lines(file: Path) -> Iterator[bytes]:
+    """The lines of an .ini, of G-code text or of the plate of a sliced project; or those that the
+    settings of a binary G-code are in an .ini.
+
+    Raises OSError, and InputError where it is damaged or has a line of more than 16 MiB.
+    """
+    if not stat.S_ISREG(file.stat().st_mode):
+        raise InputError(f"{file} is not a plain file.", "Name an .ini or a G-code file.")
+    with file.open("rb") as source:
+        if _is_sliced(file):
+            pieces = plate_text(source, file.name)
+        elif _is_binary(file):
+            pieces = iter([_as_ini(settings_of(source, file.name))])
+        else:
+            pieces = iter(lambda: source.read(_PIECE_BYTES), b"")
+        rest = b""
+        for piece in pieces:
+            *lines, rest = (rest + piece).split(b"\n")
+            yield from (line + b"\n" for line in lines)
+            if len(rest) > _LINE_BYTES_MAX:
+                raise InputError(
+                    f"{file.name} has a line of more than {_LINE_BYTES_MAX >> 20} MiB: it is "
+                    "neither an .ini nor G-code."
+                )
+        if rest:
+            yield rest
+
+
+def _is_sliced(file: Path) -> bool:
+    return file.name.lower().endswith(_SLICED_PROJECT)
+
+
+def _is_binary(file: Path) -> bool:
+    with file.open("rb") as source:
+        return is_binary(source.read(len(MAGIC)))
+
+
 def _has_positive(values: bytes) -> bool:
     return any(float(value) > 0 for value in re.findall(rb"\d+\.?\d*|\.\d+", values[:_VALUE_BYTES]))
-
-
-def _lines(source: BinaryIO) -> Iterator[bytes]:
-    """The lines of a file.  Raises InputError for one of more than 16 MiB."""
-    while line := source.readline(_LINE_BYTES_MAX):
-        if len(line) == _LINE_BYTES_MAX:
-            raise InputError(
-                f"{source.name} has a line of more than {_LINE_BYTES_MAX >> 20} MiB: it is neither "
-                "an .ini nor G-code."
-            )
-        yield line
 
 
 def _as_ini(settings: Mapping[str, str]) -> bytes:

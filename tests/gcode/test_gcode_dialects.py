@@ -13,6 +13,7 @@ from printprep.cli.run import run
 from printprep.errors import InputError
 from printprep.gcode.measure import measure_gcode
 from printprep.gcode.modal_state import StateTracker
+from printprep.slicer.sanitize import sets_density, without_commands
 
 SKIRT = "G1 Z0.2\nG1 X80 Y80\nG1 X140 Y80 E2\nG1 X140 Y140 E2\nG1 X80 Y140 E2\nG1 X80 Y80 E2\n"
 SUPPORT = "G1 Z0.2\nG1 X130 Y100\nG1 X130 Y130 E2\n"
@@ -169,3 +170,12 @@ def test_a_project_without_one_plate_of_gcode_is_refused(tmp_path: Path):
     bomb.write_bytes(project(bomb, {1: TEXT}).read_bytes()[:-300])
     with pytest.raises(InputError, match="not a sound archive"):
         measure_gcode(bomb)
+
+
+def test_the_settings_of_a_sliced_project_can_be_loaded_without_commands(tmp_path: Path):
+    text = TEXT + b"; post_process = touch /tmp/never\n; perimeters = 3\n"
+    path = project(tmp_path / "a.gcode.3mf", {1: text})
+    loaded = without_commands(path, tmp_path)
+    assert loaded.name == "loaded.gcode"
+    assert loaded.read_bytes() == text.replace(b"; post_process = touch /tmp/never\n", b"")
+    assert sets_density(path)
