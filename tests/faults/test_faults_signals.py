@@ -30,14 +30,14 @@ def folder(tmp_path: Path) -> Path:
     """A folder for a run, with a model beside it."""
     from manifold3d import Manifold
 
-    (tmp_path / "ball.stl").write_bytes(to_bytes(Manifold.sphere(25, 96), ".stl"))
+    (tmp_path / "ball.stl").write_bytes(to_bytes(Manifold.sphere(12, 48), ".stl"))
     work = tmp_path / "work"
     work.mkdir()
     return work
 
 
 def hollow(folder: Path, *more: str) -> list[str | Path]:
-    return ["hollow", folder.parent / "ball.stl", "-o", folder / "out.3mf", *more]
+    return ["hollow", folder.parent / "ball.stl", "-o", folder / "out.3mf", "--resolution", "32", *more]
 
 
 def disturbed(folder: Path, mark: str, after_s: float, number: int, *more: str):
@@ -58,7 +58,7 @@ def test_a_signal_ends_a_run_at_once_with_its_code(
     (folder / "out.3mf").write_bytes(b"old")
     run, lived_s, _, err = disturbed(folder, f"{number}-{after_s}", after_s, number)
     assert run.returncode == code
-    assert lived_s < 1.0
+    assert lived_s < 1.5
     assert clear(err), err
     assert ended(f"{number}-{after_s}", 0.0)
     assert names(folder) == ["out.3mf"]
@@ -78,11 +78,12 @@ def test_at_every_moment_the_output_is_old_or_new_and_alone(folder: Path, number
     """The moments are spread over a whole run, and lie close together where it writes."""
     began = time.monotonic()
     whole = started(hollow(folder), folder, "whole")
-    assert whole.wait(timeout=120) == 0
+    whole.communicate(timeout=300)
+    assert whole.returncode == 0
     lasts_s = time.monotonic() - began
     new = (folder / "out.3mf").read_bytes()
-    moments = [lasts_s * k / 20 for k in range(2, 19)]
-    moments += [lasts_s * (0.9 + 0.01 * k) for k in range(12)]
+    moments = [lasts_s * k / 8 for k in range(1, 7)]
+    moments += [lasts_s * (0.9 + 0.02 * k) for k in range(6)]
     for moment in moments:
         (folder / "out.3mf").write_bytes(b"old")
         mark = f"every-{number}-{moment}"
@@ -93,7 +94,7 @@ def test_at_every_moment_the_output_is_old_or_new_and_alone(folder: Path, number
         assert "Traceback" not in err
         if number == INTERRUPT:
             assert run.returncode in (0, 130)
-            assert lived_s < 1.0 or run.returncode == 0
+            assert lived_s < 1.5 or run.returncode == 0
 
 
 @pytest.fixture
@@ -106,7 +107,7 @@ def slicing(folder: Path):
         slicer.chmod(0o755)
         begun = folder.parent / "begun"
         run = started(
-            hollow(folder, "--fill", "infill", "--slicer", str(slicer), "--resolution", "16"),
+            hollow(folder, "--fill", "infill", "--slicer", str(slicer)),
             folder, mark, STARTED=str(begun),
         )  # fmt: skip
         last = time.monotonic() + 60
