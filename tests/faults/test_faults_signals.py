@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -37,7 +38,15 @@ def folder(tmp_path: Path) -> Path:
 
 
 def hollow(folder: Path, *more: str) -> list[str | Path]:
-    return ["hollow", folder.parent / "ball.stl", "-o", folder / "out.3mf", "--resolution", "32", *more]
+    return [
+        "hollow",
+        folder.parent / "ball.stl",
+        "-o",
+        folder / "out.3mf",
+        "--resolution",
+        "32",
+        *more,
+    ]
 
 
 def disturbed(folder: Path, mark: str, after_s: float, number: int, *more: str):
@@ -140,11 +149,61 @@ def test_a_command_that_is_killed_is_told_and_leaves_nothing(folder: Path, slici
     (worker,) = [
         int(pid) for pid in Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
     ]
-    import os
-
     os.kill(worker, signal.SIGKILL)
     _, err = run.communicate(timeout=60)
     assert run.returncode == 3
     assert clear(err) and "memory" in err
     assert ended("killed", 1.0)
     assert names(folder) == []
+
+
+def supervised(body: str) -> list[str]:
+    """A run of the program whose command is this code."""
+    code = f"""
+import os, printprep.cli.run, printprep.cli.supervise
+def main(arguments):
+    {body}
+printprep.cli.run.main = main
+printprep.cli.supervise.supervised(["check", "x.stl"])
+"""
+    return [sys.executable, "-c", code]
+
+
+@pytest.mark.parametrize(("number", "code"), [(INTERRUPT, 130), (TERMINATE, 143)])
+def test_a_library_that_holds_the_interpreter_does_not_hold_up_the_end(
+    tmp_path: Path, number: int, code: int
+):
+    begun = tmp_path / "begun"
+    body = f"open({str(begun)!r}, 'w').close(); import ctypes; ctypes.PyDLL(None).sleep(60)"
+    run = subprocess.Popen(supervised(body), stderr=subprocess.PIPE, text=True)
+    while not begun.exists():
+        assert run.poll() is None
+        time.sleep(0.02)
+    time.sleep(0.2)
+    began = time.monotonic()
+    run.send_signal(number)
+    _, err = run.communicate(timeout=30)
+    assert time.monotonic() - began < 1.5
+    assert run.returncode == code
+    assert clear(err)
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("os.abort()", "crashed (SIGABRT)"),
+        ("os.kill(os.getpid(), 11)", "crashed (SIGSEGV)"),
+        ("os._exit(1)", "ended with code 1"),
+    ],
+)
+def test_a_library_that_ends_the_run_is_told(body: str, words: str):
+    run = subprocess.run(supervised(body), capture_output=True, text=True, check=False)
+    assert run.returncode == 70
+    assert clear(run.stderr) and words in run.stderr
+
+
+def test_what_was_ignored_stays_ignored():
+    """A run under nohup lives on when its terminal is closed."""
+    body = "import time; os.kill(os.getppid(), 1); time.sleep(0.5); raise SystemExit(0)"
+    run = subprocess.run(["nohup", *supervised(body)], capture_output=True, check=False)
+    assert run.returncode == 0
