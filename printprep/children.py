@@ -141,18 +141,26 @@ class _Kept:
         return bytes(self._head + self._tail).decode("utf-8", "replace")
 
 
-def _spent(session: int) -> int | None:
-    """Processor time that the processes of a session took so far, in ticks; None if unknown."""
+def _spent(child: int) -> int | None:
+    """Processor time that a child took so far, with its session and all descendants, in ticks.
+
+    None where the system does not tell.
+    """
     if not sys.platform.startswith("linux"):
         return None
-    ticks = 0
-    for process in _processes():
+    parents: dict[int, int] = {}
+    mine, ticks = {child}, {}
+    for process in sorted(_processes()):
         with contextlib.suppress(OSError):
             # After the name, which may hold anything: state, parent, group, session, …
             fields = Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()
-            if int(fields[3]) == session:
-                ticks += sum(int(ticked) for ticked in fields[11:15])
-    return ticks
+            parents[process] = int(fields[1])
+            ticks[process] = sum(int(ticked) for ticked in fields[11:15])
+            if int(fields[3]) == child:
+                mine.add(process)
+    while more := {each for each, parent in parents.items() if parent in mine} - mine:
+        mine |= more
+    return sum(ticks.get(process, 0) for process in mine)
 
 
 def end_marked(variable: str, token: str) -> None:
