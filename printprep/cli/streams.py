@@ -67,6 +67,9 @@ def guard_streams() -> None:
 
 def _guarded(stream: TextIO | None, descriptor: int, name: str | None) -> TextIO:
     encoding = getattr(stream, "encoding", None) or "utf-8"
+    if sys.platform == "win32" and stream is not None and stream.isatty():
+        stream.reconfigure(errors="replace")  # type: ignore[attr-defined]
+        return stream  # a Windows console takes characters, not bytes
     raw = _Raw(descriptor, name)
     # A pipe in a code page must not break on a degree sign.
     return io.TextIOWrapper(
