@@ -8,8 +8,14 @@ from collections.abc import Sequence
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the program and exit with its exit code.
 
-    From here on a signal ends the run in order; nothing is imported before.
+    arguments : those of the command line by default.  The program then runs in a process of its
+    own, and a signal ends it in order; nothing is imported before.  Arguments that are given run
+    in this process.
     """
+    if arguments is not None:
+        from printprep.cli.run import run
+
+        raise SystemExit(run(arguments))
     from printprep.cli.supervise import supervised
 
-    supervised(arguments)
+    supervised(None)
