@@ -32,11 +32,12 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.cavity", "printprep.gcode", "printprep.render"),
     ("printprep.overhang", "printprep.thickness", "printprep.stand", "printprep.grid"),
     ("printprep.mesh", "printprep.slicer"),
-    ("printprep.threemf", "printprep.profiles"),
+    ("printprep.threemf", "printprep.profiles", "printprep.bgcode"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
     ("printprep.input_file",),
     (
         "printprep.arrays",
+        "printprep.children",
         "printprep.errors",
         "printprep.process",
         "printprep.processors",

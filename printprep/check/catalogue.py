@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from printprep.types import Finding, Severity, Unit
+from printprep.wording import printable
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ _KINDS = (
     Kind("tilt", "deg", _ERROR, "a part that falls over"),
     # the print, measured in its G-code
     Kind("another-print", None, _WARNING, "a comparison with the wrong part"),
+    Kind("features-unknown", None, _WARNING, "a skirt or a support taken for a foot"),
     Kind("filament-count", "mm3", _WARNING, "figures that the slicer's own count contradicts"),
     Kind("filled-cavity", "mm3", _ERROR, "a cavity that the slicer prints solid"),
     Kind("printed-centre-of-mass", "mm", _WARNING, "a print that balances differently"),
@@ -132,8 +134,8 @@ def finding(
     return Finding(
         rule=kind_id,
         severity=severity,
-        message=message,
-        fix=fix,
+        message=printable(message),
+        fix=None if fix is None else printable(fix),
         value=value,
         limit=limit,
         unit=kind.unit if value is not None or limit is not None else None,

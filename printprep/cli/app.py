@@ -34,7 +34,7 @@ Exit codes:
   5    output: the file cannot be written
   6    tool: a slicer is missing or failed
   70   a defect of printprep
-  130  interrupted
+  130  interrupted (Ctrl-C); 128 + N: ended by signal N
 
 \b
 Examples:

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from printprep.cli.options import json_option, quiet_option, traceback_option
+from printprep.wording import printable
 
 METHODS = (
     "solid", "shell", "paper", "paper-no-base", "lean", "lean-no-base", "lean-full-base",
@@ -158,9 +159,9 @@ def command(
     elif not quiet:
         click.echo(markdown(found), nl=False)
     for name, error in found.failures:
-        click.echo(f"printprep: error: {name}: {error.message}", err=True)
+        click.echo(printable(f"printprep: error: {name}: {error.message}"), err=True)
     return found.failures[0][1].exit_code if found.failures else 0
 
 
 def _tell(name: str, done: int, total: int) -> None:
-    click.echo(f"{done}/{total} {name}", err=True)
+    click.echo(f"{done}/{total} {printable(name)}", err=True)

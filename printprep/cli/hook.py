@@ -84,8 +84,9 @@ def command(
 ) -> int:
     """Measure GCODE as a slicer's post-processing script, and write the figures at its end.
 
-    It warns if the print tips over at less than --lean. GCODE is changed in a single step at the
-    end; after any failure it is unchanged. The hook uses no network and writes no other file.
+    GCODE is text, binary G-code (.bgcode) or a sliced project of one plate (.gcode.3mf). The hook
+    warns if the print tips over at less than --lean. GCODE is changed in a single step at the end;
+    after any failure it is unchanged. The hook uses no network and writes no other file.
     """
     from printprep.cli.console import trouble_to_stderr
     from printprep.hook.judge import already_running, judge_and_annotate

@@ -74,6 +74,11 @@ def export_command(name: str, output: Path | None, settings: tuple[str, ...]) ->
         return
     from printprep.files import write_atomically
 
+    source = Path(name)
+    if output.exists() and source.exists() and output.samefile(source):
+        raise UsageError(
+            f"{output} is the profile, which would be replaced.", "Name another file with --output."
+        )
     write_atomically(output, text.encode())
     click.echo(f"Written: {output}")
 

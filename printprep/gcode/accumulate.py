@@ -23,13 +23,16 @@ from printprep.gcode.lexer import read_rows
 from printprep.gcode.modal_state import ModalState, StateTracker
 from printprep.gcode.moments import COLUMNS, inertia_about_centre, moments_of, sums_by
 from printprep.gcode.paths import Stretches, Walker
-from printprep.gcode.printed import Printed
+from printprep.gcode.printed import Balance, Printed
 from printprep.gcode.slicer_summary import summary_of
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float, Int
+
+_FIRST_LAYER_MAX = 1_000_000  # lines; a bed of 400 mm full of 0.4 mm lines holds far fewer
+_WIDTH_MAX_MM = 50.0
 
 
 class Accumulator:
@@ -51,7 +54,7 @@ class Accumulator:
         self._cavities = Cavities(cavities) if cavities else None
         self._bodies = Bodies(bodies) if len(bodies) > 1 else None
         self._count = len(bodies)
-        self._walker = Walker()
+        self._walker = Walker(name)
         self._bead_sizes = BeadSizes(tracker)
         self._line = 1
         self._motion = -1
@@ -66,13 +69,13 @@ class Accumulator:
     def add(self, piece: bytes) -> None:
         """Add the next piece of the file, which ends with the end of a line."""
         rows = read_rows(piece, self._name, self._line, self._motion)
+        first_line = self._line
         self._line += rows.lines
         self._motion = rows.motion
-        states, changed_at, became = self._tracker.feed_all(rows.others)
+        states, changed_at, became = self._tracker.feed_all(rows.others, first_line)
         changes = np.searchsorted(np.array(changed_at, dtype=np.int64), rows.line)
         state_of_row = np.array([0, *became], dtype=np.int64)[changes]
-        made = self._walker.walk(rows, state_of_row, states)
-        if len(made.filament):
+        for made in self._walker.walk(rows, state_of_row, states, first_line):
             self._deposit(made, states)
 
     def _deposit(self, made: Stretches, states: Sequence[ModalState]) -> None:
@@ -95,6 +98,12 @@ class Accumulator:
         beads[missing, 5] = -(made.filament / np.maximum(length, 1e-9))[missing]
         for index in np.unique(group):
             self._lowest[index].add(beads[group == index])
+            if self._lowest[index].count > _FIRST_LAYER_MAX:
+                raise InputError(
+                    f"{self._name} prints more than {_FIRST_LAYER_MAX} lines into its first layer; "
+                    "no more are read.",
+                    "Slice the model again, with a coarser resolution.",
+                )
         if self._cavities is not None:
             deeper = np.where(missing, height, wide) / 2
             share = self._cavities.share_inside(axis_start, axis_end, deeper)
@@ -144,7 +153,11 @@ class Accumulator:
         diameter_mm: float | None,
         density_g_cm3: float | None,
     ) -> Printed:
-        """The whole print, after the last piece.  Raises InputError where it prints nothing."""
+        """The whole print, after the last piece.
+
+        Raises InputError where the file is cut off, prints nothing, or has figures beyond reason.
+        """
+        self._refuse_half()
         filament = Filament(self._tracker, diameter_mm, density_g_cm3)
         keys = [self._feature(key) for key in self._keys]
         volumes = np.array([filament.mm3(key) for key in keys])
@@ -157,7 +170,7 @@ class Accumulator:
                 f"{self._name} prints no part of a model.",
                 "Check that it is G-code for a filament printer.",
             )
-        in_mm3 = self._sums * volumes[:, None] if len(keys) else self._sums
+        in_mm3 = self._sums * volumes[:, None]
         in_g = in_mm3 * grams[:, None]
         whole = in_g[kept].sum(axis=0)
         beads, owner = self._first_layer(kept, volumes)
@@ -170,6 +183,7 @@ class Accumulator:
             own = [i for i in kept if keys[i].body == body]
             if own:
                 bodies.append(balance_of(in_g[own].sum(axis=0), beads[owner == body], bed))
+        self._refuse_nonsense(whole, balance, *bodies)
         inside = self._inside * volumes
         support = np.array([key.feature in SUPPORT for key in keys])
         by_feature = _by_feature(keys, in_g[:, 0])
@@ -194,8 +208,34 @@ class Accumulator:
             support_in_cavities_mm3=float(inside[support].sum()),
             in_cavities_at_mm=next(iter(self._at.values()), None),
             assumed=filament.assumed,
+            labelled=self._tracker.labelled,
             slicer_summary=summary_of(self._tracker),
         )
+
+    def _refuse_half(self) -> None:
+        """Raise InputError where a mark is missing with which the slicer ends a file."""
+        if self._tracker.awaited:
+            marks = ", ".join(sorted(mark.decode("ascii") for mark in self._tracker.awaited))
+            raise InputError(
+                f"{self._name} is cut off: the line {marks!r}, with which its slicer ends a file, "
+                "is missing.",
+                "Export it again from the slicer.",
+            )
+
+    def _refuse_nonsense(self, moments: Float, *balances: Balance) -> None:
+        """Raise InputError where a figure is no number: then nothing can be said of the print.
+
+        moments : (10,) of the whole print.
+        """
+        figures = [*moments.tolist()]
+        for each in balances:
+            figures += [*each.centre_of_mass_mm, each.contact_area_mm2, each.tilt_deg or 0.0]
+        if not np.isfinite(figures).all() or not moments[0] > 0:
+            raise InputError(
+                f"{self._name} has numbers that no print can have: its mass or balance cannot be "
+                "computed.",
+                "Slice the model again.",
+            )
 
     def _feature(self, key: Key) -> Key:
         """The key, with custom as the feature before the first label: that is start G-code."""
@@ -216,7 +256,10 @@ class Accumulator:
                 beads = self._lowest[i].beads.copy()
                 missing = beads[:, 5] < 0
                 # As Cura and others count, a bead without a given width has a rectangular section.
-                beads[missing, 5] *= -volumes[i] / beads[missing, 6]
+                with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+                    width = beads[missing, 5] * -volumes[i] / beads[missing, 6]
+                # A blob where the nozzle hardly moves is no wide line.
+                beads[missing, 5] = np.minimum(width, _WIDTH_MAX_MM)
                 layers.append(beads)
                 owners.append(np.full(len(beads), bodies[i]))
         return np.concatenate(layers), np.concatenate(owners)

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.gcode.first_layer import union_of
+from printprep.gcode.first_layer import contact_of_beads
 from printprep.gcode.printed import Balance
-from printprep.stand.contact import contact_of
 
 if TYPE_CHECKING:
     from printprep.arrays import Float
@@ -22,7 +21,7 @@ def balance_of(moments: Float, beads: Float, bed_mm: float) -> Balance:
     """
     x, y, z = (float(value) for value in moments[1:4] / moments[0])
     centre = (x, y, z - bed_mm)
-    contact = contact_of(union_of(beads)) if len(beads) else None
+    contact = contact_of_beads(beads)
     if contact is None:
         return Balance(float(moments[0]), centre, np.zeros((0, 2)), 0.0, None)
     ahead = contact.footing.offsets_mm - contact.footing.normals @ np.array(centre[:2])

@@ -1,7 +1,9 @@
 """Features of G-code (perimeter, infill, support …): one name for the labels of all slicers.
 
 The names are those of PrusaSlicer (libslic3r's ExtrusionRole), in lower case.  SuperSlicer adds a
-few; OrcaSlicer and BambuStudio use others (`;TYPE:` or `; FEATURE:`); Cura writes capitals.
+few; OrcaSlicer and BambuStudio use others (`;TYPE:` or `; FEATURE:`); Cura and ideaMaker write
+capitals; CraftWare writes `;segType:`.  Simplify3D writes `; feature skirt` (before version 4,
+`; skirt`), and KISSlicer `; 'Perimeter Path', …`.
 """
 
 from __future__ import annotations
@@ -62,7 +64,48 @@ _NAMES = {
     "fill": "internal infill",
     "support-interface": "support material interface",
     "prime-tower": "wipe tower",
+    # ideaMaker
+    "raft": "support material",
+    "solid-fill": "solid infill",
+    "gap-fill": "gap fill",
+    "dense-support": "support material interface",
+    "wipe-tower": "wipe tower",
+    "ooze-wall": "skirt",
+    "shield": "skirt",
+    # CraftWare
+    "hshell": "solid infill",
+    "innerhair": "gap fill",
+    "loop": "perimeter",
+    "infill": "internal infill",
+    "supporttouch": "support material interface",
+    "softsupport": "support material interface",
+    "pillar": "wipe tower",
+    # Simplify3D
+    "outer perimeter": "external perimeter",
+    "inner perimeter": "perimeter",
+    "single extrusion": "gap fill",
+    "solid layer": "solid infill",
+    "dense support": "support material interface",
+    "prime pillar": "wipe tower",
+    "ooze shield": "skirt",
+    # KISSlicer
+    "crown": "solid infill",
+    "solid": "solid infill",
+    "stacked sparse infill": "internal infill",
+    "support (may stack)": "support material",
+    "skirt/brim/raft": "skirt",
+    "brim/skirt": "skirt",
+    "travel/ironing": "ironing",
 }
+
+SIMPLIFY3D_BARE = frozenset(
+    {
+        "skirt", "brim", "raft", "outer perimeter", "inner perimeter", "gap fill", "infill",
+        "single extrusion", "solid layer", "bridge", "support", "dense support", "prime pillar",
+        "ooze shield",
+    }
+)  # fmt: skip
+"""Comments that are labels by themselves in Simplify3D before version 4."""
 
 
 def feature_of(label: str) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import InputError
+from printprep.wording import shortened
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,6 +30,11 @@ HOME, SET = 28, 92
 
 _BEYOND = 8  # zero bytes after the text, so that looking ahead needs no bounds check
 _DIGITS_MAX = 18  # what int64 holds
+_STEPS = 8  # blanks and digits in a row that are walked over one by one
+_BLANK = np.zeros(256, dtype=bool)
+_BLANK[list(b" \t")] = True
+_DIGIT = np.zeros(256, dtype=bool)
+_DIGIT[list(b"0123456789")] = True
 _NUMBER = np.zeros(256, dtype=bool)
 _NUMBER[list(b"0123456789.+-")] = True
 _COLUMN = np.full(256, -1, dtype=np.int8)
@@ -89,10 +95,21 @@ def read_rows(text: bytes, where: str, first_line: int, motion: int = -1) -> Row
 
 def _after_blanks(data: Bytes, at: Int) -> Int:
     """(k,) the first places from ``at`` (k,) on that hold no blank."""
-    blank = (data[at] == ord(" ")) | (data[at] == ord("\t"))
-    while blank.any():
-        at = at + blank
-        blank = (data[at] == ord(" ")) | (data[at] == ord("\t"))
+    return _beyond(data, at, _BLANK)
+
+
+def _beyond(data: Bytes, at: Int, among: Bool) -> Int:
+    """(k,) the first places from ``at`` (k,) on whose character is not ``among`` (256,)."""
+    running = among[data[at]]
+    for _ in range(_STEPS):
+        if not running.any():
+            return at
+        at = at + running
+        running = among[data[at]]
+    if running.any():  # long runs: look the ends up instead of walking to them
+        others = np.flatnonzero(~among[data])
+        at = at.copy()
+        at[running] = others[np.searchsorted(others, at[running])]
     return at
 
 
@@ -101,9 +118,7 @@ def _after_number(data: Bytes, at: Int) -> Int:
     numbered = ((data[at] == ord("N")) | (data[at] == ord("n"))) & _digit(data[at + 1])
     if not numbered.any():
         return at
-    behind = at + numbered
-    while (running := numbered & _digit(data[behind])).any():
-        behind = behind + running
+    behind = _beyond(data, at + numbered, _DIGIT)
     return np.where(numbered, _after_blanks(data, behind), at)
 
 
@@ -173,10 +188,11 @@ def _words(
     sound |= kind[row] == HOME
     if not sound.all():
         wrong = int(np.argmin(sound))
-        text = bytes(data[starts[row[wrong]] : ends[row[wrong]]]).decode("ascii", "replace")
         line = numbers[row[wrong]]
+        begin_of, end_of = starts[row[wrong]], ends[row[wrong]]
+        text = shortened(bytes(data[begin_of:end_of]).decode("ascii", "replace"))
         raise InputError(
-            f"{where}, line {line}: {text!r} has a word without a valid number.",
+            f"{where}, line {line}: '{text}' has a word without a valid number.",
             "Slice the model again.",
         )
     words[row, _COLUMN[data[at]]] = values

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.errors import InputError
-from printprep.files import reason_of
+from printprep.errors import InputError, ToolError
 from printprep.gcode.features import LEFT_OUT
 
 if TYPE_CHECKING:
@@ -15,8 +14,8 @@ if TYPE_CHECKING:
 
     from printprep.gcode.printed import Printed
 
-_PIECE_BYTES = 4 << 20
-_LINE_BYTES_MAX = 16 << 20
+_WHOLE_SHARE = 0.9  # the moves of a whole file add up to the count within 0.5 %
+_ROUNDING_MM3 = 10.0
 
 
 def measure_gcode(
@@ -32,6 +31,8 @@ def measure_gcode(
 
     Parameters
     ----------
+    path : G-code as text, binary G-code (.bgcode), or a sliced project (.gcode.3mf); the content
+        decides, not the name.
     cavities : solids that should stay empty, in the coordinates of the G-code.
     bodies : solids that do not touch, in the same coordinates; each is balanced by itself.
     left_out : features (:mod:`printprep.gcode.features`) that do not belong to the model.
@@ -39,53 +40,49 @@ def measure_gcode(
 
     Raises
     ------
-    InputError : the file is missing, binary, malformed, or prints nothing.
+    InputError : the file is missing, malformed, cut off, beyond a limit, or prints nothing.
     """
     from printprep.gcode.accumulate import Accumulator
     from printprep.gcode.modal_state import StateTracker
+    from printprep.gcode.source import is_binary_file, pieces
 
     path = Path(path)
-    tracker = StateTracker()
+    tracker = StateTracker(path.name)
     accumulator = Accumulator(tracker, path.name, cavities, bodies)
-    for piece in _pieces(path):
+    for piece in pieces(path):
         accumulator.add(piece)
-    return accumulator.result(left_out, diameter_mm, density_g_cm3)
+    printed = accumulator.result(left_out, diameter_mm, density_g_cm3)
+    if is_binary_file(path):
+        _refuse_half(path, printed)
+    return printed
 
 
-def _pieces(path: Path) -> Iterator[bytes]:
-    """The content of a file in pieces that end with the end of a line."""
+def measure_sliced(
+    path: Path,
+    slicer: str,
+    *,
+    cavities: Sequence[Manifold] = (),
+    bodies: Sequence[Manifold] = (),
+) -> Printed:
+    """As ``measure_gcode``, for a file that a slicer just wrote; slicer : its name.
+
+    Raises ToolError where it is no G-code that can be measured.
+    """
     try:
-        with path.open("rb") as file:
-            rest = b""
-            while more := file.read(_PIECE_BYTES):
-                if not rest:
-                    _refuse_other_formats(path, more)
-                whole, newline, rest_of = (rest + more).rpartition(b"\n")
-                rest = rest_of
-                if len(rest) > _LINE_BYTES_MAX:
-                    raise InputError(
-                        f"{path.name} is not G-code: it has a line of more than "
-                        f"{_LINE_BYTES_MAX >> 20} MiB."
-                    )
-                if newline:
-                    yield whole + newline
-            if rest:
-                yield rest + b"\n"
-    except FileNotFoundError as error:
-        raise InputError(f"{path} does not exist.", "Check the name and the folder.") from error
-    except OSError as error:
-        raise InputError(f"{path.name} cannot be read: {reason_of(error)}.") from error
+        return measure_gcode(path, cavities=cavities, bodies=bodies)
+    except InputError as error:
+        raise ToolError(
+            f"{slicer} wrote G-code that cannot be measured: {error.message}",
+            "Slice the file by hand once, to see what it prints.",
+        ) from error
 
 
-def _refuse_other_formats(path: Path, head: bytes) -> None:
-    if head.startswith(b"GCDE"):
+def _refuse_half(path: Path, printed: Printed) -> None:
+    """Raise InputError for binary G-code that prints far less than the count at its head."""
+    counted = printed.slicer_summary.filament_mm3
+    if counted and printed.filament_mm3 < _WHOLE_SHARE * counted - _ROUNDING_MM3:
         raise InputError(
-            f"{path.name} is binary G-code.",
-            "Switch off Binary G-code in the slicer's printer settings (binary_gcode = 0), "
-            "or open the file in the slicer's G-code viewer and export it as text.",
-        )
-    if head.startswith(b"PK\x03\x04"):
-        raise InputError(
-            f"{path.name} is an archive, not G-code.",
-            "Unpack the .gcode in it (Metadata/plate_1).",
+            f"{path.name} is cut off: its moves take {printed.filament_mm3 / 1000:.2f} cm³ of the "
+            f"{counted / 1000:.2f} cm³ that it names.",
+            "Export it again from the slicer.",
         )

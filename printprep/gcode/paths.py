@@ -7,13 +7,14 @@ not move), and arcs (G2, G3) by radius or by centre, which is relative (G91.1) e
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from printprep.arrays import runs
+from printprep.errors import InputError
 from printprep.gcode.lexer import HOME, SET, E, I, J, R, Rows, X, Y, Z
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from printprep.gcode.modal_state import ModalState
 
 
+_REACH_MM = 1e5  # no printer is larger than 100 m
+_FILAMENT_MAX = 1e9  # mm or mm³: a tonne of filament
+_CHORDS_MAX = 1 << 18  # made of arcs at a time, so that memory stays bounded for any file
 _TURN_DEG = 5.0  # an arc becomes chords of at most this turn: sagitta 0.1 % of the radius
 
 
@@ -41,19 +45,25 @@ class Stretches:
 class Walker:
     """Keeps the position of the head and the filament from one piece of a file to the next."""
 
-    def __init__(self) -> None:
+    def __init__(self, name: str) -> None:
+        """name : of the file, for errors."""
+        self._name = name
         self._at = np.zeros(4)  # x, y, z, e in the file's coordinates, mm
         self._origin = np.zeros(3)  # sum of all G92: machine = file + origin
 
-    def walk(self, rows: Rows, state_of_row: Int, states: Sequence[ModalState]) -> Stretches:
-        """The stretches that a piece of the file deposits.
+    def walk(
+        self, rows: Rows, state_of_row: Int, states: Sequence[ModalState], first_line: int
+    ) -> Iterator[Stretches]:
+        """The stretches that a piece of the file deposits, in one or more parts.
 
-        state_of_row : (n,) for each row the index of its state in ``states``.
+        state_of_row : (n,) for each row the index of its state in ``states``;  first_line : number
+        of the piece's first line, for errors.
+
+        Raises InputError for a place or an arc that no printer reaches.
         """
         n = len(rows.kind)
         if n == 0:
-            nothing = np.zeros((0, 3))
-            return Stretches(nothing, nothing, np.zeros(0), np.zeros(0, dtype=np.int64))
+            return
         words = self._in_mm(rows, state_of_row, states)
         relative = np.array([state.relative for state in states])[state_of_row]
         relative_e = np.array([state.relative_e for state in states])[state_of_row] | relative
@@ -65,18 +75,30 @@ class Walker:
         origins = self._origins(rows.kind, before, after)
         self._at = after[-1].copy()
         start, end = before[:, :3] + origins, after[:, :3] + origins
+        in_reach = (np.abs(end) <= _REACH_MM).all(axis=1) & (np.abs(after[:, E]) <= _FILAMENT_MAX)
+        in_reach &= ~(np.abs(words[:, [I, J, R]]) > _REACH_MM).any(axis=1)
+        if not in_reach.all():
+            line = first_line + int(rows.line[np.argmin(in_reach)])
+            raise InputError(
+                f"{self._name}, line {line}: it moves beyond {_REACH_MM / 1000:g} m, farther than "
+                "any printer reaches.",
+                "Slice the model again.",
+            )
         filament = np.where(sets, 0.0, after[:, E] - before[:, E])
         arc = (rows.kind == 2) | (rows.kind == 3)
         across = (start[:, :2] != end[:, :2]).any(axis=1) | arc
         kept = np.flatnonzero((filament > 0) & across)
         made = Stretches(start[kept], end[kept], filament[kept], state_of_row[kept])
+        if not len(kept):
+            return
         if not arc[kept].any():
-            return made
+            yield made
+            return
         placed = np.array([state.absolute_centre for state in states])[state_of_row][kept]
         words, before = words[kept], before[kept]
         words[placed, I] -= before[placed, X]  # both in the file's coordinates
         words[placed, J] -= before[placed, Y]
-        return _straightened(made, rows.kind[kept], words)
+        yield from _straightened(made, rows.kind[kept], words)
 
     def _in_mm(self, rows: Rows, state_of_row: Int, states: Sequence[ModalState]) -> Float:
         """(n, 7) words in mm (E in mm³ where volumetric); a bare G92 or G28 sets all axes to 0."""
@@ -119,30 +141,36 @@ def _follow(value: Float, relative: Bool, start: float) -> Float:
     return after
 
 
-def _straightened(made: Stretches, kind: Int, words: Float) -> Stretches:
+def _straightened(made: Stretches, kind: Int, words: Float) -> Iterator[Stretches]:
     """The same stretches with each arc as chords, its filament spread evenly over the angle.
 
     kind : (n,) G number;  words : (n, 7) mm.
     """
     arc = kind >= 2
-    centre, turn = _arcs(made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc])
+    centre = np.zeros((len(kind), 2))
+    turn = np.zeros(len(kind))
+    centre[arc], turn[arc] = _arcs(made.start_mm[arc], made.end_mm[arc], kind[arc] == 2, words[arc])
     pieces = np.ones(len(kind), dtype=np.int64)
-    pieces[arc] = np.maximum(1, np.ceil(np.abs(turn) / np.radians(_TURN_DEG))).astype(np.int64)
-    owner, step = runs(pieces)
-    ends = []
-    for shift in (0, 1):
-        share = (step + shift) / pieces[owner]
-        point = made.start_mm[owner] + share[:, None] * (made.end_mm - made.start_mm)[owner]
-        of_arc = np.cumsum(arc)[owner] - 1
+    pieces[arc] = np.maximum(1, np.ceil(np.abs(turn[arc]) / np.radians(_TURN_DEG))).astype(np.int64)
+    parts = np.flatnonzero(np.diff(np.cumsum(pieces) // _CHORDS_MAX, prepend=0))
+    for some in np.split(np.arange(len(kind)), parts):
+        if not len(some):
+            continue
+        owner, step = runs(pieces[some])
+        owner = some[owner]
         bent = arc[owner]
-        from_centre = (made.start_mm[arc][:, :2] - centre)[of_arc[bent]]
-        angle = turn[of_arc[bent]] * share[bent]
-        cos, sin = np.cos(angle), np.sin(angle)
-        x, y = from_centre.T
-        around = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
-        point[bent, :2] = centre[of_arc[bent]] + around
-        ends.append(point)
-    return Stretches(ends[0], ends[1], (made.filament / pieces)[owner], made.state[owner])
+        from_centre = made.start_mm[owner[bent], :2] - centre[owner[bent]]
+        ends = []
+        for shift in (0, 1):
+            share = (step + shift) / pieces[owner]
+            point = made.start_mm[owner] + share[:, None] * (made.end_mm - made.start_mm)[owner]
+            angle = turn[owner[bent]] * share[bent]
+            cos, sin = np.cos(angle), np.sin(angle)
+            x, y = from_centre.T
+            around = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+            point[bent, :2] = centre[owner[bent]] + around
+            ends.append(point)
+        yield Stretches(ends[0], ends[1], (made.filament / pieces)[owner], made.state[owner])
 
 
 def _arcs(start: Float, end: Float, clockwise: Bool, words: Float) -> tuple[Float, Float]:

@@ -58,6 +58,8 @@ class Printed:
     in_cavities_mm3, support_in_cavities_mm3 : deposited inside the cavities given, and the support
     in this;  in_cavities_at_mm : a place of the first, or None.
     assumed : figures that the file does not give, one sentence each.
+    labelled : whether the file labels its features; where it does not, skirt, brim and supports
+    cannot be told from the model, and count as part of it.
     """
 
     mass_g: float
@@ -78,4 +80,5 @@ class Printed:
     support_in_cavities_mm3: float
     in_cavities_at_mm: tuple[float, float, float] | None
     assumed: tuple[str, ...]
+    labelled: bool
     slicer_summary: SlicerSummary

@@ -7,6 +7,7 @@ import re
 from printprep.gcode.modal_state import StateTracker, numbers
 from printprep.gcode.printed import SlicerSummary
 
+_TIME_CHARACTERS = 64
 _SPAN = {"d": 86400, "h": 3600, "m": 60, "s": 1}
 _TIME_KEYS = (
     "estimated printing time (normal mode)",  # PrusaSlicer, SuperSlicer, OrcaSlicer
@@ -31,8 +32,8 @@ def summary_of(tracker: StateTracker) -> SlicerSummary:
 
 def _seconds(settings: dict[str, str]) -> float | None:
     for key in _TIME_KEYS:
-        spans = re.findall(r"(\d+(?:\.\d+)?)\s*([dhms])", settings.get(key, ""))
+        spans = re.findall(r"(\d+(?:\.\d+)?)\s*([dhms])", settings.get(key, "")[:_TIME_CHARACTERS])
         if spans:
             return sum(float(number) * _SPAN[unit] for number, unit in spans)
-    cura = re.fullmatch(r"\d+(?:\.\d+)?", settings.get("TIME", ""))
+    cura = re.fullmatch(r"\d+(?:\.\d+)?", settings.get("TIME", "")[:_TIME_CHARACTERS])
     return float(cura[0]) if cura else None

@@ -7,6 +7,7 @@ slicer that a hook starts does not start the hook again.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.check.catalogue import finding
+from printprep.errors import InputError
 from printprep.types import Finding
 from printprep.version import __version__
 
@@ -71,7 +73,7 @@ def judge(gcode: Path, *, lean: Lean, part: Path | None = None) -> JudgedPrint:
 
     computed = None if part is None else computed_part(part)
     printed = measured(gcode)
-    findings = list(_several_objects(printed))
+    findings = [*_several_objects(printed), *_features_unknown(gcode, printed)]
     if computed is None:
         findings += tips(printed, lean)
     else:
@@ -158,7 +160,7 @@ def notes(judged: JudgedPrint) -> list[str]:
         "contact_area_mm2": f"{printed.contact_area_mm2:.1f}",
         "tilt_deg": f"{tilt:.2f}",
         "lean_deg": f"{judged.lean.angle_deg:g}" + ("" if azimuth is None else f"@{azimuth:g}"),
-        "stands": "yes" if tilt >= judged.lean.angle_deg else "no",
+        "stands": _stands(printed, tilt, judged.lean),
         "left_out": ", ".join(printed.left_out) or "nothing",
     }
     if judged.part is not None:
@@ -166,6 +168,13 @@ def notes(judged: JudgedPrint) -> list[str]:
         lines["in_cavities_mm3"] = f"{printed.in_cavities_mm3:.2f}"
     lines["findings"] = ", ".join(item.rule for item in judged.findings) or "none"
     return [f"{key} = {value}" for key, value in lines.items()]
+
+
+def _stands(printed: Printed, tilt_deg: float, lean: Lean) -> str:
+    """Whether the print stands at the lean: yes, no, or unknown where its features are."""
+    if not tilt_deg >= lean.angle_deg:  # a tilt angle that is no number never stands
+        return "no"
+    return "yes" if printed.labelled else "unknown"
 
 
 def moved_to(part: ComputedPart, printed: Printed) -> ComputedPart:
@@ -215,6 +224,18 @@ def _several_objects(printed: Printed) -> Iterator[Finding]:
         )
 
 
+def _features_unknown(gcode: Path, printed: Printed) -> Iterator[Finding]:
+    if not printed.labelled:
+        yield finding(
+            "features-unknown",
+            f"{gcode.name} does not label its features: skirt, brim and supports cannot be told "
+            "from the model. Mass and tilt angle count all of them, so whether the print stands is "
+            "unknown.",
+            "Export it from a slicer that writes labels, with comments (PrusaSlicer, OrcaSlicer, "
+            "BambuStudio, Cura, Simplify3D, ideaMaker, KISSlicer).",
+        )
+
+
 def _setting(key: str) -> float | None:
     """The first extruder's value of a print setting, from the slicer's environment variables."""
     value = os.environ.get(f"SLIC3R_{key}", "").split(",")[0]
@@ -222,4 +243,6 @@ def _setting(key: str) -> float | None:
         number = float(value)
     except ValueError:
         return None
+    if not math.isfinite(number):
+        raise InputError(f"The slicer's variable SLIC3R_{key} is {value}, which is no number.")
     return number if number > 0 else None

@@ -8,7 +8,6 @@ unchanged.
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import InputError, ToolError
+from printprep.files import scratch_folder
 from printprep.gcode.modal_state import numbers
 from printprep.hook.gcode_file import replace_content
 from printprep.hook.judge import JudgedPrint, guarded, measured, notes, same_size, tips
@@ -84,8 +84,7 @@ def reslice(
             "the slicer cannot be used.",
         )
     at = (before.bounds_mm.mean(axis=0)[0], before.bounds_mm.mean(axis=0)[1])
-    with guarded(), tempfile.TemporaryDirectory(prefix="printprep-") as name:
-        folder = Path(name)
+    with guarded(), scratch_folder() as folder:
         settings = _density(before, limits)
         with progress.stage("slice-solid"):
             plain = _sliced_as_it_is(program, solid, at, settings, gcode, folder)
@@ -137,7 +136,13 @@ def _bed(settings: Mapping[str, str]) -> list[float] | None:
     height = numbers(settings, "max_print_height")
     if len(corners) < 3 or not height or any(len(corner) != 2 for corner in corners):
         return None
-    extent = np.ptp(np.array(corners, dtype=float), axis=0)
+    try:
+        places = np.array(corners, dtype=float)
+    except ValueError as error:
+        raise InputError(
+            "The G-code is unchanged: its bed_shape holds no numbers.", "Slice the model again."
+        ) from error
+    extent = np.ptp(places, axis=0)
     return [float(extent[0]), float(extent[1]), height[0]]
 
 
@@ -204,7 +209,7 @@ def _sliced_as_it_is(
     model, made = folder / "model.stl", folder / "plain.gcode"
     model.write_bytes(to_bytes(_moved(solid, at), ".stl"))
     program.slice(model, made, settings, load)
-    return measured(made)
+    return _measured(program, made)
 
 
 def _sliced_hollow(
@@ -221,8 +226,19 @@ def _sliced_hollow(
     made = folder / "hollow.gcode"
     part = _write_part(result, at, folder / "hollow.3mf")
     program.slice(part.file, made, settings, load)
-    printed = measured(made, part)
+    printed = _measured(program, made, part)
     return made, JudgedPrint(printed, part.lean, part, sorted_findings(compare(part, printed)))
+
+
+def _measured(program: Slicer, made: Path, part: ComputedPart | None = None) -> Printed:
+    """The figures of what a slicer wrote.  Raises ToolError where it cannot be measured."""
+    try:
+        return measured(made, part)
+    except InputError as error:
+        raise ToolError(
+            f"{program.name} wrote G-code that cannot be measured: {error.message}",
+            "Slice the model by hand once, to see what it prints.",
+        ) from error
 
 
 def _write_part(result: HollowResult, at: tuple[float, float], target: Path) -> ComputedPart:

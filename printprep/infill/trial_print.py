@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.files import scratch_folder
 from printprep.output.item import infill_item
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ class TrialSlicer:
 
         apart : the solids that stand by themselves; beads of a base go to the nearest one.
 
-        Raises ToolError if the slicer refuses the part, InputError if the print has no first layer.
+        Raises ToolError if the slicer refuses the part, or its print cannot be measured.
         """
         from printprep.threemf.write import write_3mf
 
@@ -64,16 +63,16 @@ class TrialSlicer:
 
     def _measured(self, content: bytes, at_mm: Float, apart: Sequence[Manifold]) -> Weighed:
         """Slice a 3MF and measure it.  at_mm : (3,) place of the part's origin on the bed."""
-        from printprep.gcode.measure import measure_gcode
+        from printprep.gcode.measure import measure_sliced
         from printprep.gcode.stability import stability_of_print
         from printprep.slicer.prusa_ini import profile_settings
 
-        with tempfile.TemporaryDirectory(prefix="printprep-") as name:
-            file, gcode = Path(name) / "part.3mf", Path(name) / "part.gcode"
+        with scratch_folder() as folder:
+            file, gcode = folder / "part.3mf", folder / "part.gcode"
             file.write_bytes(content)
             self.slicer.slice(file, gcode, profile_settings(self.profile))
             bodies = [solid.translate(at_mm.tolist()) for solid in apart]
-            printed = measure_gcode(gcode, bodies=bodies)
+            printed = measure_sliced(gcode, self.slicer.name, bodies=bodies)
         mm3 = printed.volume_mm3 / printed.mass_g
         moments, stabilities = [], []
         for body in printed.bodies or (printed,):

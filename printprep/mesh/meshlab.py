@@ -7,16 +7,15 @@ safe from all three.
 
 from __future__ import annotations
 
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.children import FloodedError, HungError, run
+from printprep.files import reason_of, scratch_folder
 from printprep.mesh import meshlab_child
 from printprep.mesh.orient import right_side_out
 from printprep.mesh.shells import Candidate, Refusal, united
@@ -72,28 +71,23 @@ def _run(vertices: Float, faces: Int, recipe: str) -> tuple[Float, Int]:
     """The filtered mesh, welded: (n, 3) mm and (m, 3), as the arguments.  Raises _ChildError."""
     if not sys.executable:
         raise _ChildError("there is no Python to start MeshLab with", final=True)
-    with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder) / "given.npz", Path(folder) / "mended.npz"
+    with scratch_folder() as folder:
+        source, target = folder / "given.npz", folder / "mended.npz"
         np.savez(source, vertices=vertices, faces=faces)
         # -P keeps this folder off the child's path: its modules would hide others.
         command = [sys.executable, "-P", meshlab_child.__file__, str(source), str(target), recipe]
         try:
-            done = subprocess.run(
-                command,
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=TIMEOUT_S,
-                check=False,
-            )
-        except subprocess.TimeoutExpired as error:
-            reason = f"MeshLab's filters did not end within {TIMEOUT_S:g} s"
-            raise _ChildError(reason, final=False) from error
+            ended = run(command, TIMEOUT_S)
+        except HungError as error:  # another recipe would hang as long
+            raise _ChildError(f"the process of MeshLab's filters {error}", final=True) from error
+        except FloodedError as error:
+            raise _ChildError("MeshLab's filters printed without end", final=True) from error
         except OSError as error:
-            raise _ChildError(f"MeshLab could not be started: {error}", final=True) from error
-        if done.returncode != 0 or not target.is_file():
-            raise _failure(done.returncode, done.stderr)
+            raise _ChildError(
+                f"MeshLab could not be started: {reason_of(error)}", final=True
+            ) from error
+        if ended.exit_code != 0 or not target.is_file():
+            raise _failure(ended.exit_code, ended.stderr)
         with np.load(target) as result:
             return weld(result["vertices"], result["faces"])
 

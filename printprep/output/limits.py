@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import finding
-from printprep.errors import OutputError, UsageError
+from printprep.errors import UsageError
 from printprep.files import refuse_impossible_target
 
 if TYPE_CHECKING:
@@ -33,13 +32,8 @@ def check_output(path: Path) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Raise OutputError if a file cannot be written: a folder is missing, or not writable."""
+    """Raise OutputError before the long work if a file cannot be written."""
     refuse_impossible_target(path)
-    if not os.access(path.parent, os.W_OK):
-        raise OutputError(
-            f"{path} cannot be written: the folder {path.parent} is not writable.",
-            "Name a folder that you may write to.",
-        )
 
 
 def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING
 
 from printprep.batches.summary import counts_of
-from printprep.wording import counted
+from printprep.wording import counted, printable
 
 if TYPE_CHECKING:
     from rich.status import Status
@@ -36,7 +36,7 @@ def follow(
             if as_json:
                 _print(json.dumps(row.to_json(), allow_nan=False))
             elif not quiet or row.status != "part":
-                _print(row_line(row))
+                _print(printable(row_line(row)))
             if line is not None:
                 line.update(_progress(rows, len(planned.kept), total, time.perf_counter() - start))
     if not (as_json or quiet):

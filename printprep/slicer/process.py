@@ -12,21 +12,22 @@ import os
 import re
 import shutil
 import sys
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from printprep.errors import InputError, OutputError, ToolError
-from printprep.files import reason_of, replacing
+from printprep.files import reason_of, replacing, scratch_folder
 from printprep.slicer.child import INSTALL_HINT, SLICER_VARIABLE, last_lines, run_child
 from printprep.slicer.sanitize import settings_ini, without_commands
+from printprep.wording import printable
 
 _ON_PATH = ("prusa-slicer", "prusa-slicer-console", "PrusaSlicer", "prusaslicer")
 _IN_APP = Path("Contents", "MacOS", "PrusaSlicer")
 _VERSION = re.compile(r"^(\w*Slicer)-(\d+)\.(\d+)\.(\d+)", re.MULTILINE)
-_ASK_SECONDS = 60.0
+_ASK_SECONDS = 30.0
 _COPY_BYTES = 1 << 20
+_WARNINGS_MAX, _WARNING_MAX = 100, 300  # how many are kept, and characters of each
 
 
 @dataclass(frozen=True)
@@ -60,9 +61,9 @@ class Slicer:
 
     def info(self, file: Path, *, timeout_seconds: float = 120.0) -> ModelInfo:
         """Ask about a model (STL, OBJ, 3MF).  Raises ToolError where the slicer cannot load it."""
-        with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
-            safe = _model(file, Path(folder))
-            done = run_child(self.executable, ["--info", str(safe)], Path(folder), timeout_seconds)
+        with scratch_folder() as folder:
+            safe = _model(file, folder)
+            done = run_child(self.executable, ["--info", str(safe)], folder, timeout_seconds)
         return _parse_info(done.stdout, file)
 
     def slice(
@@ -82,8 +83,7 @@ class Slicer:
         Raises ToolError where the slicer fails, takes too long, or exits with 0 and no G-code;
         OutputError where `out_gcode` cannot be written.
         """
-        with tempfile.TemporaryDirectory(prefix="printprep-") as name:
-            folder = Path(name)
+        with scratch_folder() as folder:
             made = folder / "sliced.gcode"
             arguments = ["--export-gcode", "--dont-arrange", "--output", str(made)]
             if self.version >= (2, 4, 0):  # else a bad value is replaced without a warning
@@ -168,8 +168,8 @@ def _console(path: Path) -> Path:
 
 def _identified(path: Path) -> Slicer:
     """The slicer at a path, with the name and version that its help prints."""
-    with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
-        done = run_child(path, ["--help"], Path(folder), _ASK_SECONDS)
+    with scratch_folder() as folder:
+        done = run_child(path, ["--help"], folder, _ASK_SECONDS)
     match = _VERSION.search(done.stdout)
     if match is None:
         raise ToolError(f"{path} is not PrusaSlicer: its --help names no version.", INSTALL_HINT)
@@ -186,7 +186,8 @@ def _model(file: Path, folder: Path) -> Path:
             f"{file.name} is not a model for a slicer: its suffix is {file.suffix or 'missing'}.",
             "Use 3MF, STL or OBJ.",
         )
-    return without_commands(file, folder)
+    # An absolute path never begins with a dash, so that no name is taken for an option.
+    return without_commands(file.absolute(), folder)
 
 
 def _parse_info(text: str, file: Path) -> ModelInfo:
@@ -208,5 +209,6 @@ def _parse_info(text: str, file: Path) -> ModelInfo:
 
 
 def _warnings(text: str) -> tuple[str, ...]:
-    lines = [line.strip() for line in text.splitlines()]
-    return tuple(line for line in lines if re.search(r"\bwarning\b", line, re.IGNORECASE))
+    lines = [printable(line[:_WARNING_MAX]).strip() for line in text.splitlines()]
+    warnings = [line for line in lines if re.search(r"\bwarning\b", line, re.IGNORECASE)]
+    return tuple(dict.fromkeys(warnings))[:_WARNINGS_MAX]

@@ -68,7 +68,7 @@ def slice_baselines(
 
     Raises ToolError if the slicer fails.
     """
-    from printprep.gcode.measure import measure_gcode
+    from printprep.gcode.measure import measure_sliced
     from printprep.gcode.stability import tilt_as_printed
     from printprep.mesh.write import to_bytes
     from printprep.output.prusa_keys import wall_keys
@@ -79,7 +79,7 @@ def slice_baselines(
     baselines = []
     for name, infill in _BASELINES:
         program.slice(stl, gcode, {**settings, **wall_keys(part.profile), **infill}, load)
-        printed = measure_gcode(gcode)
+        printed = measure_sliced(gcode, program.name)
         tilt = tilt_as_printed(printed, part.lean)
         baselines.append(Baseline(name, printed.mass_g, printed.slicer_summary.seconds, tilt))
     return tuple(baselines)

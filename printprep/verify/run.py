@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import re
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.errors import InputError
-from printprep.files import reason_of
+from printprep.files import scratch_folder
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -88,8 +85,7 @@ def verify(
     settings = settings_for(computed, load)
     program = find_slicer(slicer)
     findings: list[Finding] = []
-    with tempfile.TemporaryDirectory(prefix="printprep-") as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         with progress.stage("slice"):
             printed, warnings = slice_and_measure(program, computed, settings, load, folder)
         findings += compare(computed, printed)
@@ -125,12 +121,13 @@ def settings_for(part: ComputedPart, load: Path | None) -> dict[str, str]:
     Raises InputError if ``load`` cannot be read, UsageError for a profile that is not for filament.
     """
     from printprep.slicer.prusa_ini import profile_settings
+    from printprep.slicer.sanitize import sets_density
 
     own = profile_settings(part.profile)
     if load is None:
         return own
     # PrusaSlicer's default is a density of 0: everything would weigh nothing.
-    return {} if _has_density(load) else {"filament_density": own["filament_density"]}
+    return {} if sets_density(load) else {"filament_density": own["filament_density"]}
 
 
 def slice_and_measure(
@@ -141,23 +138,9 @@ def slice_and_measure(
     folder: Path,
 ) -> tuple[Printed, tuple[str, ...]]:
     """The print of a part, and the slicer's warnings."""
-    from printprep.gcode.measure import measure_gcode
+    from printprep.gcode.measure import measure_sliced
 
     gcode = folder / "part.gcode"
     sliced = program.slice(part.file, gcode, settings, load)
-    return measure_gcode(gcode, cavities=part.cavities, bodies=part.bodies), sliced.warnings
-
-
-def _has_density(config: Path) -> bool:
-    try:
-        with config.open("rb") as lines:
-            return any(_sets_density(line) for line in lines if b"filament_density" in line)
-    except OSError as error:
-        raise InputError(f"{config} cannot be read: {reason_of(error)}.") from error
-
-
-def _sets_density(line: bytes) -> bool:
-    found = re.match(rb"[;\s]*filament_density\s*=\s*([\d.,\s]+)", line)
-    if found is None:
-        return False
-    return any(float(value) > 0 for value in re.findall(rb"\d*\.?\d+", found[1]))
+    printed = measure_sliced(gcode, program.name, cavities=part.cavities, bodies=part.bodies)
+    return printed, sliced.warnings

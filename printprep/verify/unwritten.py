@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
+from printprep.files import scratch_folder
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verif
     from printprep.output.part_file import part_bytes
     from printprep.verify.run import verify
 
-    with tempfile.TemporaryDirectory(prefix="printprep-") as folder:
-        part = Path(folder) / "part.3mf"
+    with scratch_folder() as folder:
+        part = folder / "part.3mf"
         part.write_bytes(part_bytes(result.contents(), part.suffix))
         return verify(part, progress=progress)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from printprep.cli.run import run
-from printprep.profiles import profile_names
+from printprep.profiles import profile_names, profile_source
 
 
 @pytest.mark.parametrize("line", ["profiles", "profiles list"])
@@ -70,6 +70,16 @@ def test_export_to_stdout_and_to_a_file(tmp_path, capsys):
     assert run([*line, "-o", str(target)]) == 0
     assert "first_layer_height = 0.3\n" in target.read_text(encoding="utf-8")
     assert "Written:" in capsys.readouterr().out
+
+
+def test_export_does_not_replace_the_profile_itself(tmp_path, capsys):
+    own, link = tmp_path / "own.toml", tmp_path / "link.ini"
+    own.write_text(profile_source("fdm-pla-0.4"))
+    link.symlink_to(own)
+    for output in (own, link):
+        assert run(["profiles", "export", str(own), "-o", str(output)]) == 2
+        assert "is the profile" in capsys.readouterr().err
+        assert own.read_text() == profile_source("fdm-pla-0.4")
 
 
 def test_export_into_a_missing_folder(capsys):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 
 from printprep.errors import InputError
-from printprep.gcode import measure as measuring
+from printprep.gcode import source as measuring
 from printprep.gcode.measure import measure_gcode
 
 LENGTH, DEPTH, TALL = 20.0, 20.0, 10.0
@@ -345,7 +345,7 @@ def test_a_part_on_a_raft_stands_on_its_own_lowest_layer(measured):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"GCDE\x01\x00\x00", "binary"),
+        (b"GCDE\x01\x00\x00", "cut off"),
         (b"PK\x03\x04", "archive"),
         (b"", "prints no part of a model"),
         (b"solid cube\nendsolid\n", "prints no part of a model"),

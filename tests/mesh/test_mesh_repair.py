@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mesh_bodies import box, inside_out, joined, model, sphere
 
+from printprep.children import Ended, HungError
 from printprep.errors import GeometryError
 from printprep.mesh import meshlab, meshlab_child, remesh
 from printprep.mesh.measure import arrays, bodies, shells
@@ -211,11 +212,11 @@ class Child:
     def __init__(self, status: int, stderr: str = "", hangs: bool = False) -> None:
         self.status, self.stderr, self.hangs, self.calls = status, stderr, hangs, 0
 
-    def __call__(self, command: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    def __call__(self, command: list[str], timeout_s: float) -> Ended:
         self.calls += 1
         if self.hangs:
-            raise subprocess.TimeoutExpired(command, options["timeout"])
-        return subprocess.CompletedProcess(command, self.status, "", self.stderr)
+            raise HungError(f"was stopped after {timeout_s:g} s without a result")
+        return Ended(self.status, "", self.stderr)
 
 
 @pytest.mark.parametrize(
@@ -223,14 +224,14 @@ class Child:
     [
         (Child(meshlab_child.CANNOT_LOAD, "libGL.so.1: no such file"), 1, "libGL.so.1"),
         (Child(-11), len(meshlab_child.RECIPES), None),
-        (Child(0, hangs=True), len(meshlab_child.RECIPES), None),
+        (Child(0, hangs=True), 1, "was stopped after"),  # the next would hang as long
         (Child(meshlab_child.REFUSED, "odd mesh"), len(meshlab_child.RECIPES), None),
     ],
 )
 def test_a_child_that_fails_is_skipped_and_said_so(
     monkeypatch: pytest.MonkeyPatch, child: Child, calls: int, said: str | None
 ) -> None:
-    monkeypatch.setattr(meshlab.subprocess, "run", child)
+    monkeypatch.setattr(meshlab, "run", child)
     monkeypatch.setattr(remesh, "CELLS", 50)
     vertices, faces = OUTER
     solid = repair(model((vertices, faces[1:])))

@@ -166,6 +166,7 @@ def as_printed(part: ComputedPart, **changes: object) -> Printed:
         support_in_cavities_mm3=0.0,
         in_cavities_at_mm=None,
         assumed=(),
+        labelled=True,
         slicer_summary=SlicerSummary("PrusaSlicer 2.5.0", 1e4, None, None, {}),
     )
     return replace(same, **changes)

@@ -1,0 +1,1 @@
+"""Binary G-code of PrusaSlicer (.bgcode): its blocks, their content as text, a block to append."""
