@@ -9,7 +9,7 @@ word on the written part, at layer phases that the building does not all use.
 
 Every slicer prints the part three ways in the same settings: as it is, and the model with walls as
 thick and 15 % gyroid or lightning.  Then it slices the part with supports on, in every style that
-it has, at the automatic threshold and at 45°: support inside the cavities, and support outside
+it has, at the automatic threshold and at 45° in turn: support inside the cavities, and support outside
 beside that of the same part without cavities and without a support blocker.  The file of --json
 keeps the rows, and later runs go on there.
 """
@@ -62,6 +62,9 @@ LEAST_G = 0.5
 def main() -> int:
     parser = table_parser(__doc__)
     parser.add_argument("--slicer", type=Path, action="append", help="a PrusaSlicer; repeatable")
+    parser.add_argument(
+        "--every-style", action="store_true", help="every style at every threshold, not in turn"
+    )
     parser.add_argument("--no-supports", action="store_true", help="slice without supports only")
     chosen = parser.parse_args()
     profile = load_profile(chosen.profile)
@@ -99,7 +102,7 @@ def measured(
             if f"{slicer.name}:done_prints" not in row:
                 row |= prefixed(slicer, prints(slicer, result, path, placement, folder))
             if not chosen.no_supports and f"{slicer.name}:done_supports" not in row:
-                row |= prefixed(slicer, supports(slicer, result))
+                row |= prefixed(slicer, supports(slicer, result, every=chosen.every_style))
     return row
 
 
@@ -177,17 +180,18 @@ def sliced(slicer: Slicer, file: Path, settings: Mapping[str, str], folder: Path
     }
 
 
-def supports(slicer: Slicer, result: HollowResult) -> Row:
-    """Grams of support inside and outside, in every style and at every threshold.
+def supports(slicer: Slicer, result: HollowResult, *, every: bool) -> Row:
+    """Grams of support inside and outside, in every style, the thresholds in turn.
 
-    Each combination has three figures: inside, outside, and outside the same part without cavities
+    every : in every style at every threshold.  What is supported depends on the threshold alone, and
+    how, on the style, but for the organic one.  Each combination has three figures: inside, outside, and outside the same part without cavities
     and without a blocker.
     """
     row: Row = {"inside_g": 0.0, "outside_off": 0.0, "done_supports": True}
     if not result.part.cavities:
         return row
     part, cavities = result.part.manifold, united(result.part.cavities)
-    for style, threshold_deg in _combinations(slicer):
+    for style, threshold_deg in _combinations(slicer, every=every):
         how = (cavities, result.profile, threshold_deg)
         inside, outside = supports_g(slicer, part, *how, style=style, blocker=result.blocker)
         within, bare = supports_g(slicer, result.part.outside, *how, style=style)
@@ -198,10 +202,11 @@ def supports(slicer: Slicer, result: HollowResult) -> Row:
     return row
 
 
-def _combinations(slicer: Slicer) -> Iterator[tuple[str, int]]:
-    for style in STYLES:
+def _combinations(slicer: Slicer, *, every: bool) -> Iterator[tuple[str, int]]:
+    for number, style in enumerate(STYLES):
         if style != "organic" or slicer.version >= (2, 6, 0):
-            yield from ((style, threshold) for threshold in THRESHOLDS_DEG)
+            turn = THRESHOLDS_DEG[number % 2]
+            yield from ((style, angle) for angle in THRESHOLDS_DEG if every or angle == turn)
 
 
 def _children_cpu_seconds() -> float:

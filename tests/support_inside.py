@@ -54,6 +54,8 @@ def supports_g(
         **profile_settings(profile),
         # Hollow, without solid layers: quicker, and supports do not depend on it (a cow's cavity at
         # a first layer of 0.25 mm takes 0.4580 g of them with either)
+        "perimeters": "1",
+        "perimeter_generator": "classic",
         "fill_density": "0%",
         "top_solid_layers": "0",
         "bottom_solid_layers": "0",
