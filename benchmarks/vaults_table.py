@@ -9,9 +9,9 @@ word on the written part, at layer phases that the building does not all use.
 
 Every slicer prints the part three ways in the same settings: as it is, and the model with walls as
 thick and 15 % gyroid or lightning.  Then it slices the part with supports on, in every style that
-it has, at the automatic threshold and at 45° in turn: support inside the cavities, and support outside
-beside that of the same part without cavities and without a support blocker.  The file of --json
-keeps the rows, and later runs go on there.
+it has, at the automatic threshold and at 45° in turn: support inside the cavities, and support
+outside beside that of the same part without cavities and without a support blocker.  The file of
+--json keeps the rows, and later runs go on there.
 """
 
 from __future__ import annotations
@@ -183,9 +183,9 @@ def sliced(slicer: Slicer, file: Path, settings: Mapping[str, str], folder: Path
 def supports(slicer: Slicer, result: HollowResult, *, every: bool) -> Row:
     """Grams of support inside and outside, in every style, the thresholds in turn.
 
-    every : in every style at every threshold.  What is supported depends on the threshold alone, and
-    how, on the style, but for the organic one.  Each combination has three figures: inside, outside, and outside the same part without cavities
-    and without a blocker.
+    every : in every style at every threshold.  What is supported depends on the threshold, and how,
+    on the style; only the organic style decides on both.  Each combination has three figures:
+    inside, outside, and outside the same part without cavities and without a blocker.
     """
     row: Row = {"inside_g": 0.0, "outside_off": 0.0, "done_supports": True}
     if not result.part.cavities:

@@ -26,5 +26,5 @@ def test_check_hollow_and_simulate_say_what_was_read(tmp_path: Path) -> None:
     path = tmp_path / "a.stl"
     data = to_bytes(Manifold.cube((30, 30, 30)), ".stl")
     path.write_bytes(data[:80] + struct.pack("<I", 0) + data[84:])
-    for found in (check(path), hollow(path, resolution=12, self_support=False), simulate(path)):
+    for found in (check(path), hollow(path, resolution=12, vaults="none"), simulate(path)):
         assert [item.rule for item in found.findings].count("facet-count") == 1

@@ -15,7 +15,7 @@ from printprep.types import Drain, Drainage, Supports
 DRAINED = hollow_result(
     profile="resin-standard",
     with_base=True,
-    supports=Supports(3, 5, 12.5, 0.0, 0),
+    supports=Supports("printer", 3, 5, 12.5, 0.0, 0),
     drainage=Drainage(
         (Drain("outlet", 0, (10.0, 0.0, 4.0), (1.0, 0.0, 0.0), 3.5, 2.0),),
         filled_mm3=500.0,

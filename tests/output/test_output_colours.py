@@ -20,7 +20,7 @@ from printprep.threemf.read import read_3mf
 from printprep.threemf.write import Item, Volume, write_3mf
 from printprep.types import PLAIN, Material, Paint, Style
 
-QUICK = FillOptions(resolution=12, self_support=False, base="never")
+QUICK = FillOptions(resolution=12, vaults="none", base="never")
 RED, BLUE = Style(Material("red", "#FF0000")), Style(Material("blue", "#0000FF"))
 PAINTED = Style(None, (("colour", "8"),))
 SPLIT = Style(None, (("colour", "8046"),))  # a triangle of several pieces: its last digit is 6
