@@ -162,7 +162,9 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
             encoded,
             wall_mm=profile.wall_mm,
             stability=_stability(
-                part, figures.centre_of_mass_mm, profile.printer.first_layer_mm,
+                part,
+                figures.centre_of_mass_mm,
+                profile.printer.first_layer_mm,
                 infilled=figures.infill is not None,
             ),
             centre_mm=figures.centre_of_mass_mm,

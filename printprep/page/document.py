@@ -23,19 +23,29 @@ if TYPE_CHECKING:
     from printprep.page.content import Page
 
 _HERE = Path(__file__).resolve().parent
-_ESCAPED = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029"}
+_ESCAPED = {
+    "<": "\\u003c",
+    ">": "\\u003e",
+    "&": "\\u0026",
+    "\u2028": "\\u2028",
+    "\u2029": "\\u2029",
+}
 
 
 def document(page: Page) -> bytes:
     """The page as HTML in UTF-8; the same page and version give the same bytes."""
     script, style = asset("viewer.js"), asset("page.css")
-    text = _templates().get_template("page.html").render(
-        page=page,
-        policy=policy(script, style, served=page.form is not None),
-        script=script,
-        style=style,
-        data=json_text(page.view),
-        chart=None if page.curve is None else drawn(page.curve),
+    text = (
+        templates()
+        .get_template("page.html")
+        .render(
+            page=page,
+            policy=policy(script, style, served=page.form is not None),
+            script=script,
+            style=style,
+            data=json_text(page.view),
+            chart=None if page.curve is None else drawn(page.curve),
+        )
     )
     return text.encode("utf-8")
 
@@ -77,7 +87,8 @@ def asset(name: str) -> str:
 
 
 @cache
-def _templates() -> Environment:
+def templates() -> Environment:
+    """The templates that come with printprep; every value is escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(

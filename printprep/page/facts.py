@@ -66,7 +66,9 @@ def _material(figures: Figures, profile: Profile) -> Group:
     ]
     price = cost(figures.mass_g, profile)
     if price is not None:
-        rows.append(Fact("Cost", price, f"the solid would cost {cost(figures.solid_mass_g, profile)}"))
+        rows.append(
+            Fact("Cost", price, f"the solid would cost {cost(figures.solid_mass_g, profile)}")
+        )
     other = figures.alternative_fill
     if other is not None:
         rows.append(
@@ -214,7 +216,11 @@ def verdict(
         rest = f"{counted(errors, 'error')} and {counted(warnings, 'warning')} below."
         return "bad", words, f"{goal}. {rest}"
     if warnings:
-        return ("warn" if stands else "bad"), words, f"{goal}. {counted(warnings, 'warning')} below."
+        return (
+            ("warn" if stands else "bad"),
+            words,
+            f"{goal}. {counted(warnings, 'warning')} below.",
+        )
     return ("good" if stands else "bad"), words, f"{goal}. No errors and no warnings."
 
 
@@ -242,9 +248,7 @@ def check_cards(found: Checked) -> tuple[Fact, ...]:
             f"should stand at {context.lean}",
             _stands(context.stability.tilt_deg, context.lean.angle_deg),
         ),
-        Fact(
-            "Material", material_used(found.mass_g, profile), cost(found.mass_g, profile)
-        ),
+        Fact("Material", material_used(found.mass_g, profile), cost(found.mass_g, profile)),
     ]
     return tuple(cards)
 

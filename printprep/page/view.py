@@ -63,7 +63,9 @@ def _balance(
         return None
     azimuth = stability.weakest_azimuth_deg
     return {
-        "polygon": [[round(float(x), 4), round(float(y), 4)] for x, y in stability.support_polygon_mm],
+        "polygon": [
+            [round(float(x), 4), round(float(y), 4)] for x, y in stability.support_polygon_mm
+        ],
         "centre": list(place(centre_mm)),
         "centreBefore": None if centre_before_mm is None else list(place(centre_before_mm)),
         "tiltDeg": rounded(stability.tilt_deg),

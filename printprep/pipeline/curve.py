@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def mass_over_lean(
-    program: Program, base: Base | None, azimuth_deg: float | None, count: int = 13
+    program: Program, base: Base | None, azimuth_deg: float | None, count: int = 11
 ) -> tuple[Point, ...]:
     """The lightest filling at ``count`` leans from 0° to the largest that any filling reaches.
 
