@@ -78,7 +78,8 @@ class HollowResult:
     blocker : where the file tells a slicer to make no supports, None if nowhere.
     wall_min_mm : thinnest wall between a cavity and the outside, None without a cavity.
     paint : colours of the part's outside, carried from the model; None where it has none.
-    seconds : duration of each stage;  workings : for a picture of the inside; no file contains them.
+    seconds : duration of each stage;  workings : for a picture of the inside.  No file contains
+    either.
     """
 
     model: Model

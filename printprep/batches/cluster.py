@@ -178,10 +178,10 @@ def _version_here() -> tuple[str, str]:
 def _absolute(job: Job) -> Job:
     from dataclasses import replace
 
-    beside = {
-        name: None if path is None else Path(path).absolute()
-        for name, path in (("plugs", job.plugs), ("report", job.report))
-    }
     return replace(
-        job, model=Path(job.model).absolute(), output=Path(job.output).absolute(), **beside
+        job,
+        model=Path(job.model).absolute(),
+        output=Path(job.output).absolute(),
+        plugs=None if job.plugs is None else job.plugs.absolute(),
+        report=None if job.report is None else job.report.absolute(),
     )

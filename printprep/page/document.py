@@ -1,8 +1,8 @@
 """A page as one HTML file that needs nothing else: no network, no other file.
 
-The content-security-policy allows the page's own script and style by their hashes, pictures in data:
-URLs, and nothing else; a served page may also ask its own server.  Every text of the page goes
-through the template's escaping, and the viewer's data is JSON without ``<``, ``>`` and ``&``.
+The content-security-policy allows the page's own script and style by their hashes, pictures in
+data: URLs, and nothing else; a served page may also ask its own server.  Every text of the page
+goes through the template's escaping, and the viewer's data is JSON without ``<``, ``>`` and ``&``.
 """
 
 from __future__ import annotations
@@ -19,17 +19,13 @@ from printprep.page.chart import drawn
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+    from markupsafe import Markup
 
     from printprep.page.content import Page
 
 _HERE = Path(__file__).resolve().parent
-_ESCAPED = {
-    "<": "\\u003c",
-    ">": "\\u003e",
-    "&": "\\u0026",
-    "\u2028": "\\u2028",
-    "\u2029": "\\u2029",
-}
+# The JSON writer escapes all that is not ASCII already.
+_ESCAPED = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"}
 
 
 def document(page: Page) -> bytes:
@@ -91,7 +87,7 @@ def templates() -> Environment:
     """The templates that come with printprep; every value is escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    return Environment(
+    found = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
@@ -99,6 +95,22 @@ def templates() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    found.filters["ticked"] = ticked
+    return found
+
+
+def ticked(text: str) -> Markup:
+    """A text with what stands between backticks as code; everything is escaped."""
+    from markupsafe import Markup, escape
+
+    pieces = text.split("`")
+    if len(pieces) % 2 == 0:
+        return escape(text)
+    shown = [
+        Markup("<code>{}</code>").format(piece) if number % 2 else escape(piece)
+        for number, piece in enumerate(pieces)
+    ]
+    return Markup("").join(shown)
 
 
 def _hash(text: str) -> str:

@@ -141,7 +141,7 @@ def _varints(values: Int) -> bytes:
     more = np.column_stack([values >> shift > 0 for shift in (7, 14, 21, 28)])
     used = np.column_stack([np.ones(len(values), dtype=bool), more[:, :3]])
     packed: Bytes = (groups | (more << 7)).astype(np.uint8)
-    return packed[used].tobytes()
+    return bytes(packed[used])
 
 
 def _morton(steps: Int) -> Int:

@@ -46,8 +46,11 @@ def cards(figures: Figures, profile: Profile) -> tuple[Fact, ...]:
             )
         )
     price = cost(figures.mass_g, profile)
-    note = None if price is None else f"{price} (solid: {cost(figures.solid_mass_g, profile)})"
-    found.append(Fact("Material", material_used(figures.mass_g, profile), note))
+    if price is None:
+        found.append(Fact("Material", *material_used(figures.mass_g, profile)))
+    else:
+        solid = cost(figures.solid_mass_g, profile)
+        found.append(Fact("Cost of material", f"{solid} → {price}"))
     return tuple(found)
 
 
@@ -62,7 +65,7 @@ def _material(figures: Figures, profile: Profile) -> Group:
     rows = [
         Fact("Mass", mass(figures.mass_g), f"in {profile.material.name}"),
         Fact("Solid model", mass(figures.solid_mass_g)),
-        Fact("Material", material_used(figures.mass_g, profile)),
+        Fact("Material", *material_used(figures.mass_g, profile)),
     ]
     price = cost(figures.mass_g, profile)
     if price is not None:
@@ -238,7 +241,7 @@ def _stands(tilt_deg: float | None, lean_deg: float) -> Tone:
 def check_cards(found: Checked) -> tuple[Fact, ...]:
     """The figures of a checked file to see first."""
     context, profile = found.context, found.profile
-    size = " × ".join(f"{side:.4g}" for side in context.size_mm)
+    size = " × ".join(f"{side:.3g}" for side in context.size_mm)
     cards = [
         Fact("Size", f"{size} mm"),
         Fact("Mass", mass(found.mass_g), f"in {profile.material.name}"),
@@ -248,8 +251,11 @@ def check_cards(found: Checked) -> tuple[Fact, ...]:
             f"should stand at {context.lean}",
             _stands(context.stability.tilt_deg, context.lean.angle_deg),
         ),
-        Fact("Material", material_used(found.mass_g, profile), cost(found.mass_g, profile)),
+        Fact("Material", *material_used(found.mass_g, profile)),
     ]
+    price = cost(found.mass_g, profile)
+    if price is not None:
+        cards.append(Fact("Cost of material", price))
     return tuple(cards)
 
 

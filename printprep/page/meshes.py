@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import area_normals, arrays, distance_to_mesh_mm, signed_volumes
+from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.measure import area_normals, arrays, signed_volumes
 from printprep.page.encode import ViewMesh
 from printprep.thickness.local import local_thickness
 
@@ -89,7 +90,7 @@ def simplified(solid: Manifold, most: int) -> tuple[Manifold, float]:
 
 def _extent(solid: Manifold) -> float:
     box = solid.bounding_box()
-    return max(box[axis + 3] - box[axis] for axis in range(3))
+    return max(float(box[axis + 3] - box[axis]) for axis in range(3))
 
 
 def _divided(solid: Manifold) -> Manifold:
@@ -137,31 +138,33 @@ def _classes(shape: Shape, vertices: Float, faces: Int, on_mm: float) -> Int:
     classes = np.zeros(len(faces), dtype=np.int64)
     middles = vertices[faces].mean(axis=1)
     if shape.base is not None:
-        classes[_on_base(shape, middles, on_mm)] = PART_LAYERS.index("base")
+        classes[_on(shape.base, middles, on_mm)] = PART_LAYERS.index("base")
     if not shape.cavities:
         return classes
-    inside = distance_to_mesh_mm(middles, *arrays(shape.outside)) > on_mm
+    inside = ~_on(shape.outside, middles, on_mm)
     if not inside.any():  # walls thinner than the tolerance do not exist
         return classes
     classes[inside] = PART_LAYERS.index("cavity")
     where = np.flatnonzero(inside)
     if shape.ballast is not None:
-        on = distance_to_mesh_mm(middles[where], *arrays(shape.ballast)) <= on_mm
+        on = _on(shape.ballast, middles[where], on_mm)
         classes[where[on]] = PART_LAYERS.index("ballast")
         where = where[~on]
     if shape.vaults is not None and shape.deep is not None:
-        off = distance_to_mesh_mm(middles[where], *arrays(shape.deep)) > on_mm
+        off = ~_on(shape.deep, middles[where], on_mm)
         classes[where[off]] = PART_LAYERS.index("vaults")
     for drain in shape.drains:
         classes[_in_bore(drain, middles) & inside] = PART_LAYERS.index("drains")
     return classes
 
 
-def _on_base(shape: Shape, middles: Float, on_mm: float) -> Bool:
-    assert shape.base is not None
-    low = middles[:, 2] <= shape.base.bounding_box()[5] + on_mm
-    found = np.zeros(len(middles), dtype=bool)
-    found[low] = distance_to_mesh_mm(middles[low], *arrays(shape.base)) <= on_mm
+def _on(solid: Manifold, places: Float, on_mm: float) -> Bool:
+    """(k,) whether places (k, 3) lie on a solid's surface."""
+    box = np.array(solid.bounding_box())
+    near = ((places >= box[:3] - on_mm) & (places <= box[3:] + on_mm)).all(axis=1)
+    found = np.zeros(len(places), dtype=bool)
+    if near.any():
+        found[near] = SurfaceTree(*arrays(solid)).nearest(places[near])[0] <= on_mm
     return found
 
 

@@ -25,7 +25,7 @@ def mass(mass_g: float) -> str:
 
 def tilt(tilt_deg: float | None) -> str:
     """For example "14.2°"."""
-    return "no contact" if tilt_deg is None else f"{tilt_deg:.1f}°"
+    return "no contact" if tilt_deg is None else f"{tilt_deg:.1f}°".replace("-", "−")
 
 
 def hours(seconds: float | None) -> str:
@@ -36,14 +36,14 @@ def hours(seconds: float | None) -> str:
     return f"{minutes // 60} h {minutes % 60:02d} min" if minutes >= 60 else f"{minutes} min"
 
 
-def material_used(mass_g: float, profile: Profile) -> str:
-    """Filament as a length, anything else as a volume."""
+def material_used(mass_g: float, profile: Profile) -> tuple[str, str]:
+    """Filament as a length, anything else as a volume; and what it is of."""
     volume_mm3 = 1000 * mass_g / profile.material.density_g_cm3
     if profile.traits.has_nozzle:
         diameter = profile.printer.filament_mm or FILAMENT_MM
         metres = volume_mm3 / (math.pi / 4 * diameter**2) / 1000
-        return f"{plain(metres)} m of {diameter:g} mm filament"
-    return f"{plain(volume_mm3 / 1000)} ml"
+        return f"{plain(metres)} m", f"of {diameter:g} mm filament"
+    return f"{plain(volume_mm3 / 1000)} ml", f"of {profile.material.name}"
 
 
 def cost(mass_g: float, profile: Profile) -> str | None:

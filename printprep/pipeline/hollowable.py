@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Hollowable:
     """All that may be cavity.
 
-    manifold : the volume without the vaults;  deep : the volume with them, all deeper than the wall.
+    manifold : the volume without the vaults;  deep : with them, all deeper than the wall.
     depths : below the model's surface, on the grid.
     supports : the vaults, None if there are none.
     blocker : where a slicer makes no supports, None where vaults keep the slicer's rule.

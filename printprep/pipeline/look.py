@@ -1,4 +1,4 @@
-"""Look at a model before hollowing it: the rules, its stable poses, and what each lean would cost."""
+"""Look at a model before hollowing it: its findings, its poses, and what each lean would cost."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Looked:
     """A model as it came.
 
     poses : those in which it stands, the steadiest first.
-    points : the least mass at every lean, without vaults, on the base that the profile's lean needs;
-    empty where nothing can be hollowed, or no filling stands.
+    points : the least mass at every lean, without vaults, on the base that the requested lean
+    needs; empty where nothing can be hollowed, or no filling stands.
     """
 
     name: str

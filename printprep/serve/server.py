@@ -1,7 +1,7 @@
 """The server: 127.0.0.1 only, every address under a random token, nothing else to be had.
 
-It answers four requests below ``/TOKEN/``: the page, the state of its run, the part, and a POST that
-begins a run.  Everything else gets an empty 404: a path without the token, a path with "..", a
+It answers four requests below ``/TOKEN/``: the page, the state of its run, the part, and a POST
+that begins a run.  Everything else gets an empty 404: a path without the token, a path with "..", a
 request that a page of another origin makes, and one for another host name (a name that an attacker
 points at 127.0.0.1).
 """
@@ -121,9 +121,11 @@ class _Handler(BaseHTTPRequestHandler):
             return None
         if self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
             return None
-        start, token, *rest = (self.path.split("/", 2) + ["", ""])[:3]
-        right = hmac.compare_digest(token.encode(), self.server.token.encode())
-        return rest[0] if right and start == "" and self.path.count("/") == 2 else None
+        pieces = self.path.split("/")
+        if len(pieces) != 3 or pieces[0]:
+            return None
+        right = hmac.compare_digest(pieces[1].encode(), self.server.token.encode())
+        return pieces[2] if right else None
 
     def _body(self) -> Any:
         """The JSON of a request.  Raises UsageError for a body that is too long or no JSON."""

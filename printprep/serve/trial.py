@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from printprep.profiles import Profile
 
 
-class Superseded(Exception):
+class SupersededError(Exception):
     """Another run has begun, so this one ends at its next stage."""
 
 
@@ -117,7 +117,7 @@ class Trials:
     def _run(self, number: int, job: Job, settings: Settings) -> None:
         try:
             outcome = self._hollowed(number, job, settings)
-        except Superseded:
+        except SupersededError:
             return
         except PrintprepError as error:
             self._end(number, error=error.message, hint=error.hint)
@@ -170,10 +170,10 @@ class Trials:
         )
 
     def enter(self, number: int, stage: Stage) -> None:
-        """Tell that a run is at a stage.  Raises Superseded where it is no longer the newest."""
+        """Tell that a run is at a stage.  Raises SupersededError where a newer one began."""
         with self._lock:
             if self._state.run != number:
-                raise Superseded
+                raise SupersededError
             self._state = replace(self._state, stage=STAGES[stage])
 
     def _end(

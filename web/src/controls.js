@@ -42,7 +42,8 @@ export function adopt(viewer) {
   element("lean-panel").hidden = viewer.balance === null;
   const lean = viewer.balance;
   if (lean !== null) {
-    input("azimuth").value = String(Math.round(lean.azimuth));
+    const azimuth = Math.round(lean.azimuth);
+    input("azimuth").value = String(azimuth > 180 ? azimuth - 360 : azimuth);
     input("lean").value = "0";
     showLean(viewer);
   }
@@ -229,6 +230,7 @@ function wireLean(current) {
   }
   input("show-balance").addEventListener("change", () => {
     current().balance?.show(input("show-balance").checked);
+    element("key").hidden = !input("show-balance").checked;
   });
   element("tip-it").addEventListener("click", () => {
     const { balance } = current();
@@ -259,8 +261,8 @@ function showLean(viewer) {
   element("lean-out").textContent = `${plain(lean, 1)}°`;
   element("azimuth-out").textContent = `${plain(azimuth, 0)}°`;
   const verdict = stands
-    ? `stands; tips at ${plain(tips, 1)}° this way`
-    : `has tipped: it falls at ${plain(tips, 1)}° this way`;
+    ? `· stands, tips at ${plain(tips, 1)}° this way`
+    : `· has tipped: ${plain(tips, 1)}° is too much this way`;
   element("lean-verdict").textContent = verdict;
   element("lean-verdict").classList.toggle("bad", !stands);
 }

@@ -23,10 +23,10 @@ async function main() {
     viewer = await viewer.follow(next, bytes);
     enter(viewer);
   });
-  viewer.stage.look(LOOKS.home, true);
+  const [x, y] = [0, 1].map((axis) => view.high[axis] - view.low[axis]);
+  viewer.stage.look(view.hollowed && x < y ? LOOKS.side : LOOKS.home, true);
   enter(viewer);
   if (view.hollowed) {
-    const [x, y] = [0, 1].map((axis) => view.high[axis] - view.low[axis]);
     openSection(viewer, x < y ? "x" : "y");
   }
   viewer.stage.now();

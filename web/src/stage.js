@@ -14,7 +14,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FLIGHT_MS = 650;
 const FIELD_DEG = 32;
-const SHARE_FILLED = 0.8; // of the picture, by the whole part
+const SHARE_FILLED = 0.86; // of the picture, by the whole part
 
 export class Stage {
   /**

@@ -11,6 +11,7 @@ import { Stage } from "./stage.js";
 
 export const LOOKS = {
   home: new Vector3(0.46, -0.8, 0.37),
+  side: new Vector3(0.85, -0.42, 0.3), // on a cut along x
   front: new Vector3(0, -1, 0.02),
   right: new Vector3(1, 0, 0.02),
   top: new Vector3(0, -0.02, 1),
