@@ -145,7 +145,7 @@ def _standing(figures: Figures, simulation: Simulation | None) -> Group:
     if figures.contact is not None:
         rows.append(Fact("Contact with the bed", f"{plain(figures.contact.area_mm2)} mm²"))
     x, y, z = figures.centre_of_mass_mm
-    rows.append(Fact("Centre of mass", f"{x:.1f}, {y:.1f}, {z:.1f} mm"))
+    rows.append(Fact("Centre of mass", f"{x:.1f}, {y:.1f}, {z:.1f} mm".replace("-", "−")))
     if figures.reachable_deg is not None:
         rows.append(Fact("Largest lean of any filling", f"{figures.reachable_deg:.1f}°"))
     if simulation is not None:
@@ -304,14 +304,16 @@ def curve(
 ) -> Curve | None:
     """The chart of mass over lean; None where no filling stands.
 
-    part, solid : tilt angle and mass to mark; a part without contact is left out.
+    part, solid : tilt angle and mass to mark; a part without contact is left out, and one that
+    falls over by itself is marked at 0°.
     """
     if len(points) < 2:
         return None
     dots = []
     if part is not None and part[0] is not None:
-        dots.append(Dot(part[0], part[1], "this part", "part"))
+        dots.append(Dot(max(part[0], 0.0), part[1], "this part", "part"))
     if solid[0] is not None:
-        dots.append(Dot(solid[0], solid[1], "solid model", "solid"))
+        name = "solid model" if solid[0] >= 0 else "solid model, falls over"
+        dots.append(Dot(max(solid[0], 0.0), solid[1], name, "solid"))
     along = tuple((point.lean_deg, point.mass_g) for point in points)
     return Curve(along, tuple(dots), lean.angle_deg, note)

@@ -234,6 +234,7 @@ export class Balance {
       return;
     }
     const most = this.#lies(edge);
+    this.#watch(edge, most);
     const axis = new Vector3(-edge.normal.y, edge.normal.x, 0);
     const pivot = new Vector3(edge.from.x, edge.from.y, 0);
     const start = performance.now();
@@ -250,6 +251,21 @@ export class Balance {
       }
     };
     step(start);
+  }
+
+  /**
+   * Looks at where the part will lie.
+   * @param {Edge} edge
+   * @param {number} angle radians
+   */
+  #watch(edge, angle) {
+    const { stage } = this;
+    const axis = new Vector3(-edge.normal.y, edge.normal.x, 0);
+    const pivot = new Vector3(edge.from.x, edge.from.y, 0);
+    const lies = stage.middle.clone().sub(pivot).applyAxisAngle(axis, angle).add(pivot);
+    const target = stage.bed.localToWorld(lies.lerp(stage.middle, 0.45));
+    const from = stage.camera.position.clone().sub(stage.controls.target).normalize();
+    stage.fly(target.clone().addScaledVector(from, 1.45 * stage.fitDistance(from)), target);
   }
 
   /**

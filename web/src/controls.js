@@ -217,8 +217,9 @@ export function placeHandle(viewer) {
   handle.hidden = at === null;
   if (at !== null) {
     const along = directionSeen(viewer);
-    handle.style.left = `${at.x}px`;
-    handle.style.top = `${at.y}px`;
+    const box = viewer.stage.canvas.getBoundingClientRect();
+    handle.style.left = `${Math.min(Math.max(at.x, 28), box.width - 28)}px`;
+    handle.style.top = `${Math.min(Math.max(at.y, 74), box.height - 28)}px`;
     handle.style.setProperty("--turn", `${(Math.atan2(along.y, along.x) * 180) / Math.PI}deg`);
   }
 }
@@ -261,8 +262,8 @@ function showLean(viewer) {
   element("lean-out").textContent = `${plain(lean, 1)}°`;
   element("azimuth-out").textContent = `${plain(azimuth, 0)}°`;
   const verdict = stands
-    ? `· stands, tips at ${plain(tips, 1)}° this way`
-    : `· has tipped: ${plain(tips, 1)}° is too much this way`;
+    ? `· stands up to ${plain(tips, 1)}°`
+    : `· tips over at ${plain(tips, 1)}°`;
   element("lean-verdict").textContent = verdict;
   element("lean-verdict").classList.toggle("bad", !stands);
 }

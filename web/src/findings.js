@@ -6,6 +6,8 @@ import { openSection } from "./controls.js";
 import { element, say } from "./page.js";
 import { along } from "./pick.js";
 
+const FAR = 0.75; // of the part's diagonal, from the eye to the place
+
 /** @type {Vector3 | null} */
 let marked = null;
 
@@ -37,17 +39,15 @@ function fly(viewer, number) {
   }
   const { stage, section } = viewer;
   const place = new Vector3(...finding.at);
-  const out = place.clone().sub(stage.middle);
-  out.z = Math.max(out.z, 0.15 * stage.size);
-  if (Math.hypot(out.x, out.y) < 0.05 * stage.size) {
-    out.set(0.3, -0.8, 0.35);
+  const removed = section.removes(stage.part.localToWorld(place.clone()));
+  if (removed) {
+    openSection(viewer, "off");
   }
-  out.normalize();
-  const eye = place.clone().addScaledVector(out, 0.62 * stage.size);
-  const toward = place.clone().sub(eye).normalize();
-  const hit = along(stage, viewer.layers, section, eye, toward);
-  const deep = hit !== null && hit.place.distanceTo(eye) < place.distanceTo(eye) - 0.01 * stage.size;
-  if (deep || section.removes(stage.part.localToWorld(place.clone()))) {
+  const ways = waysOut(place, stage);
+  const seen = ways.find((way) => isSeen(viewer, place, way));
+  const out = seen ?? ways[0];
+  const eye = place.clone().addScaledVector(out, FAR * stage.size);
+  if (seen === undefined) {
     stage.camera.position.copy(eye);
     const across = Math.abs(out.x) > Math.abs(out.y) ? "x" : "y";
     openSection(viewer, across, place);
@@ -57,6 +57,39 @@ function fly(viewer, number) {
   stage.fly(eye, place);
   say(`The view shows the place of the finding ${finding.rule}.`);
   element("viewer").scrollIntoView({ block: "nearest", behavior: "smooth" });
+}
+
+/**
+ * Directions from a place to an eye, the best first: away from the middle, then around and below.
+ * @param {Vector3} place
+ * @param {import("./stage.js").Stage} stage
+ */
+function waysOut(place, stage) {
+  const away = place.clone().sub(stage.middle);
+  const start = Math.hypot(away.x, away.y) < 0.03 * stage.size ? -1.05 : Math.atan2(away.y, away.x);
+  const steep = away.z / (Math.hypot(away.x, away.y, away.z) || 1);
+  const first = Math.min(Math.max(steep, -0.3), 0.6);
+  const ways = [];
+  for (const rise of [Math.max(first, 0.15), 0.35, first, -0.25, 0.9, -0.7]) {
+    for (const turn of [0, 0.6, -0.6, 1.2, -1.2, 2.2, -2.2, Math.PI]) {
+      const [x, y] = [Math.cos(start + turn), Math.sin(start + turn)];
+      ways.push(new Vector3(x, y, rise).normalize());
+    }
+  }
+  return ways;
+}
+
+/**
+ * Whether nothing is between a place and an eye in that direction.
+ * @param {import("./viewer.js").Viewer} viewer
+ * @param {Vector3} place
+ * @param {Vector3} way
+ */
+function isSeen(viewer, place, way) {
+  const { stage, layers, section } = viewer;
+  const eye = place.clone().addScaledVector(way, FAR * stage.size);
+  const hit = along(stage, layers, section, stage.part.localToWorld(eye.clone()), way.clone().negate());
+  return hit === null || hit.place.distanceTo(place) < 0.012 * stage.size;
 }
 
 /**

@@ -10,10 +10,11 @@ import {
   MeshStandardMaterial,
 } from "three";
 import { LAYER_COLOURS, thicknessColour, WALL_SHARE } from "./colours.js";
-import { creased } from "./creased.js";
+import { creased, withoutThin } from "./creased.js";
 
 /** Solids that are only cut, not drawn: their surfaces are the part's own. */
 const ONLY_CUT = new Set(["infill"]);
+const OUTER = new Set(["outside", "base"]);
 const SKIN_SEEN_THROUGH = 0.22;
 
 /**
@@ -21,6 +22,7 @@ const SKIN_SEEN_THROUGH = 0.22;
  * @property {string} name
  * @property {import("./decode.js").Mesh} mesh
  * @property {import("three").BufferGeometry} geometry
+ * @property {Uint8Array} thin which triangles have no width
  */
 
 export class Layers {
@@ -33,21 +35,23 @@ export class Layers {
     this.stage = stage;
     this.scaleTop = wallMm / WALL_SHARE;
     /** @type {Solid[]} */
-    this.solids = meshes.map((mesh) => ({ name: mesh.name, mesh, geometry: creased(mesh) }));
+    this.solids = meshes.map((mesh) => ({ name: mesh.name, mesh, ...creased(mesh) }));
     /** @type {Map<string, MeshStandardMaterial[]>} */
     this.materials = new Map();
     /** @type {Mesh[]} */
     this.drawn = [];
+    /** @type {Set<MeshStandardMaterial>} those of the part, whose corners have a thickness */
+    this.ofPart = new Set();
     this.clear = 0;
     this.thickness = false;
     const [part, ...others] = this.solids;
+    this.#colourThickness(part);
     const drawnByPart = this.#drawPart(part);
     for (const solid of others) {
       if (!drawnByPart.has(solid.name) && !ONLY_CUT.has(solid.name)) {
         this.#drawSolid(solid);
       }
     }
-    this.#colourThickness(part);
   }
 
   /** Names of all layers that can be switched, in the order they are listed. */
@@ -60,23 +64,17 @@ export class Layers {
 
   /** @param {Solid} part */
   #drawPart(part) {
-    const drawn = new Set();
-    /** @type {MeshStandardMaterial[]} */
-    const materials = [];
-    for (const layer of part.mesh.layers) {
-      if (layer.count > 0) {
-        part.geometry.addGroup(3 * layer.start, 3 * layer.count, materials.length);
-        materials.push(this.#material(layer.name, layer.name === "outside" || layer.name === "base"));
-        drawn.add(layer.name);
-      }
-    }
-    this.#add(new Mesh(part.geometry, materials));
-    return drawn;
+    const layers = part.mesh.layers.filter((layer) => layer.count > 0);
+    const materials = layers.map(({ name }) => this.#material(name, OUTER.has(name)));
+    this.ofPart = new Set(materials);
+    this.#add(new Mesh(withoutThin(part.geometry, part.thin, layers), materials));
+    return new Set(layers.map((layer) => layer.name));
   }
 
   /** @param {Solid} solid */
   #drawSolid(solid) {
-    this.#add(new Mesh(solid.geometry, this.#material(solid.name, false)));
+    const drawn = withoutThin(solid.geometry, solid.thin, solid.mesh.layers);
+    this.#add(new Mesh(drawn, [this.#material(solid.name, false)]));
   }
 
   /** @param {Mesh} mesh */
@@ -144,13 +142,13 @@ export class Layers {
 
   #refresh() {
     for (const [name, materials] of this.materials) {
-      const outer = name === "outside" || name === "base";
-      const opacity = outer ? 1 - this.clear : name === "cavity" && this.clear > 0 ? SKIN_SEEN_THROUGH : 1;
+      const skin = name === "cavity" && this.clear > 0 ? SKIN_SEEN_THROUGH : 1;
+      const opacity = OUTER.has(name) ? 1 - this.clear : skin;
       for (const material of materials) {
         material.opacity = opacity;
         material.transparent = opacity < 1;
         material.depthWrite = opacity === 1;
-        const coloured = this.thickness && this.drawn[0].material instanceof Array && this.drawn[0].material.includes(material);
+        const coloured = this.thickness && this.ofPart.has(material);
         material.vertexColors = coloured;
         material.color.set(coloured ? "#ffffff" : LAYER_COLOURS[name]);
         material.needsUpdate = true;
@@ -171,6 +169,7 @@ export class Layers {
   dispose() {
     for (const mesh of this.drawn) {
       mesh.removeFromParent();
+      mesh.geometry.dispose();
     }
     for (const solid of this.solids) {
       solid.geometry.dispose();
