@@ -5,21 +5,18 @@ import { BufferAttribute, BufferGeometry } from "three";
 
 const CREASE = Math.cos((38 * Math.PI) / 180);
 const MOST_AROUND = 96; // a fan with more triangles around a vertex is a flat disc
-const THIN_MM = 0.006;
 const SLIVER = 2e-3; // a triangle with less of its longest edge's square has no normal of its own
 
 /**
- * The mesh with its own three corners for every triangle, and which of them have no width: their
- * depth cannot be computed, so they shine through what is before them.
+ * The mesh with its own three corners for every triangle.
  * @param {import("./decode.js").Mesh} mesh
- * @returns {{geometry: BufferGeometry, thin: Uint8Array}}
+ * @returns {BufferGeometry}
  */
 export function creased(mesh) {
   const { positions, index } = mesh;
   const unit = new Float32Array(index.length); // normals of triangles
   const area = new Float32Array(index.length / 3); // 0 for slivers
-  const thin = new Uint8Array(area.length);
-  faceNormals(positions, index, unit, area, thin);
+  faceNormals(positions, index, unit, area);
   const around = facesAround(positions.length / 3, index);
   const corners = new Float32Array(3 * index.length);
   const normals = new Float32Array(3 * index.length);
@@ -33,37 +30,7 @@ export function creased(mesh) {
   geometry.setAttribute("position", new BufferAttribute(corners, 3));
   geometry.setAttribute("normal", new BufferAttribute(normals, 3));
   geometry.computeBoundingSphere();
-  return { geometry, thin };
-}
-
-/**
- * The same corners without the triangles that have no width, as ranges of an index.
- * @param {BufferGeometry} geometry
- * @param {Uint8Array} thin
- * @param {{start: number, count: number}[]} ranges of triangles
- */
-export function withoutThin(geometry, thin, ranges) {
-  const drawn = new BufferGeometry();
-  for (const [name, attribute] of Object.entries(geometry.attributes)) {
-    drawn.setAttribute(name, attribute);
-  }
-  const corners = new Uint32Array(3 * thin.length);
-  let next = 0;
-  ranges.forEach(({ start, count }, material) => {
-    const first = next;
-    for (let t = start; t < start + count; t += 1) {
-      if (thin[t] === 0) {
-        corners[next] = 3 * t;
-        corners[next + 1] = 3 * t + 1;
-        corners[next + 2] = 3 * t + 2;
-        next += 3;
-      }
-    }
-    drawn.addGroup(first, next - first, material);
-  });
-  drawn.setIndex(new BufferAttribute(corners.slice(0, next), 1));
-  drawn.boundingSphere = geometry.boundingSphere;
-  return drawn;
+  return geometry;
 }
 
 /**
@@ -71,9 +38,8 @@ export function withoutThin(geometry, thin, ranges) {
  * @param {Uint32Array} index
  * @param {Float32Array} unit
  * @param {Float32Array} area
- * @param {Uint8Array} thin
  */
-function faceNormals(positions, index, unit, area, thin) {
+function faceNormals(positions, index, unit, area) {
   for (let face = 0; face < area.length; face += 1) {
     const [a, b, c] = [3 * index[3 * face], 3 * index[3 * face + 1], 3 * index[3 * face + 2]];
     const ux = positions[b] - positions[a];
@@ -94,7 +60,6 @@ function faceNormals(positions, index, unit, area, thin) {
     unit[3 * face] = nx / length;
     unit[3 * face + 1] = ny / length;
     unit[3 * face + 2] = nz / length;
-    thin[face] = length < THIN_MM * Math.sqrt(edge) ? 1 : 0;
     area[face] = length < SLIVER * edge ? 0 : length;
   }
 }

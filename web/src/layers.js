@@ -10,7 +10,7 @@ import {
   MeshStandardMaterial,
 } from "three";
 import { LAYER_COLOURS, thicknessColour, WALL_SHARE } from "./colours.js";
-import { creased, withoutThin } from "./creased.js";
+import { creased } from "./creased.js";
 
 /** Solids that are only cut, not drawn: their surfaces are the part's own. */
 const ONLY_CUT = new Set(["infill"]);
@@ -22,7 +22,6 @@ const SKIN_SEEN_THROUGH = 0.22;
  * @property {string} name
  * @property {import("./decode.js").Mesh} mesh
  * @property {import("three").BufferGeometry} geometry
- * @property {Uint8Array} thin which triangles have no width
  */
 
 export class Layers {
@@ -35,7 +34,7 @@ export class Layers {
     this.stage = stage;
     this.scaleTop = wallMm / WALL_SHARE;
     /** @type {Solid[]} */
-    this.solids = meshes.map((mesh) => ({ name: mesh.name, mesh, ...creased(mesh) }));
+    this.solids = meshes.map((mesh) => ({ name: mesh.name, mesh, geometry: creased(mesh) }));
     /** @type {Map<string, MeshStandardMaterial[]>} */
     this.materials = new Map();
     /** @type {Mesh[]} */
@@ -67,14 +66,14 @@ export class Layers {
     const layers = part.mesh.layers.filter((layer) => layer.count > 0);
     const materials = layers.map(({ name }) => this.#material(name, OUTER.has(name)));
     this.ofPart = new Set(materials);
-    this.#add(new Mesh(withoutThin(part.geometry, part.thin, layers), materials));
+    layers.forEach(({ start, count }, i) => part.geometry.addGroup(3 * start, 3 * count, i));
+    this.#add(new Mesh(part.geometry, materials));
     return new Set(layers.map((layer) => layer.name));
   }
 
   /** @param {Solid} solid */
   #drawSolid(solid) {
-    const drawn = withoutThin(solid.geometry, solid.thin, solid.mesh.layers);
-    this.#add(new Mesh(drawn, [this.#material(solid.name, false)]));
+    this.#add(new Mesh(solid.geometry, this.#material(solid.name, false)));
   }
 
   /** @param {Mesh} mesh */
@@ -93,6 +92,10 @@ export class Layers {
       roughness: 0.72,
       metalness: 0,
       side: outer ? FrontSide : DoubleSide,
+      // Triangles without width have a depth of any size: this puts them behind the outside
+      polygonOffset: !outer,
+      polygonOffsetFactor: 1.5,
+      polygonOffsetUnits: 2,
     });
     this.materials.set(name, [...(this.materials.get(name) ?? []), material]);
     return material;
@@ -169,7 +172,6 @@ export class Layers {
   dispose() {
     for (const mesh of this.drawn) {
       mesh.removeFromParent();
-      mesh.geometry.dispose();
     }
     for (const solid of this.solids) {
       solid.geometry.dispose();
