@@ -216,8 +216,8 @@ def verdict(
         words = f"It stands at {lean}" if stands else f"It tips at {tilt_deg:.1f}°"
     goal = f"It tips at {tilt(tilt_deg)}" if stands else f"It should stand at {lean}"
     if errors:
-        rest = f"{counted(errors, 'error')} and {counted(warnings, 'warning')} below."
-        return "bad", words, f"{goal}. {rest}"
+        more = f" and {counted(warnings, 'warning')}" if warnings else ""
+        return "bad", words, f"{goal}. {counted(errors, 'error')}{more} below."
     if warnings:
         return (
             ("warn" if stands else "bad"),

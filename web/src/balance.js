@@ -183,16 +183,11 @@ export class Balance {
     let over = 0;
     this.edges.forEach((edge, i) => {
       const ahead = edge.offset - (edge.normal.x * this.centre.x + edge.normal.y * this.centre.y);
-      const share = edge.normal.dot(toward);
-      if (ahead <= 0) {
-        least = 0;
+      const share = ahead <= 0 ? 1 : edge.normal.dot(toward); // behind an edge it tips anyway
+      const lean = share > 1e-9 ? Math.atan(ahead / (this.centre.z * share)) : Math.PI / 2;
+      if (lean < least) {
+        least = lean;
         over = i;
-      } else if (share > 1e-9) {
-        const lean = Math.atan(ahead / (this.centre.z * share));
-        if (lean < least) {
-          least = lean;
-          over = i;
-        }
       }
     });
     return { deg: (least * 180) / Math.PI, edge: over };
@@ -212,10 +207,11 @@ export class Balance {
     const axis = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
     this.stage.bed.quaternion.setFromAxisAngle(axis, radians);
     const tips = this.tipsAt(azimuth);
-    const stands = this.edges.length > 0 && lean <= tips.deg + 1e-9;
-    if (stands !== !this.fallen) {
-      this.fallen = !stands;
-      this.#fall(stands ? null : this.edges[tips.edge] ?? null);
+    const stands = lean <= tips.deg + 1e-9;
+    const falls = !stands && lean > 0; // what falls by itself is shown upright on the level bed
+    if (falls !== this.fallen) {
+      this.fallen = falls;
+      this.#fall(falls ? this.edges[tips.edge] : null);
     }
     this.stage.draw();
     return stands;

@@ -261,10 +261,13 @@ function showLean(viewer) {
   const tips = balance.tipsAt(azimuth).deg;
   element("lean-out").textContent = `${plain(lean, 1)}°`;
   element("azimuth-out").textContent = `${plain(azimuth, 0)}°`;
-  const verdict = stands
-    ? `· stands up to ${plain(tips, 1)}°`
-    : `· tips over at ${plain(tips, 1)}°`;
-  element("lean-verdict").textContent = verdict;
+  let verdict = `stands up to ${plain(tips, 1)}°`;
+  if (tips < 0) {
+    verdict = "falls over by itself";
+  } else if (!stands) {
+    verdict = `tips over at ${plain(tips, 1)}°`;
+  }
+  element("lean-verdict").textContent = `· ${verdict}`;
   element("lean-verdict").classList.toggle("bad", !stands);
 }
 

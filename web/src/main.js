@@ -20,18 +20,32 @@ async function main() {
   wirePrint(current);
   wireServe(async (next, bytes) => {
     forget();
+    const before = viewer.view.hollowed;
     viewer = await viewer.follow(next, bytes);
     enter(viewer);
+    if (next.hollowed && !before) {
+      reveal(viewer);
+    }
   });
-  const [x, y] = [0, 1].map((axis) => view.high[axis] - view.low[axis]);
-  viewer.stage.look(view.hollowed && x < y ? LOOKS.side : LOOKS.home, true);
+  viewer.stage.look(LOOKS.home, true);
   enter(viewer);
   if (view.hollowed) {
-    openSection(viewer, x < y ? "x" : "y");
+    reveal(viewer);
   }
   viewer.stage.now();
   document.documentElement.dataset.ready = "true";
   performance.mark("first-picture");
+}
+
+/**
+ * Opens a hollow part along its narrow side, and looks into it.
+ * @param {Viewer} viewer
+ */
+function reveal(viewer) {
+  const { low, high } = viewer.stage;
+  const axis = high.x - low.x < high.y - low.y ? "x" : "y";
+  viewer.stage.look(axis === "x" ? LOOKS.side : LOOKS.home, true);
+  openSection(viewer, axis);
 }
 
 /** @param {Viewer} viewer */

@@ -4,7 +4,7 @@
 import { element, input, readPage, say } from "./page.js";
 
 const POLL_MS = 350;
-const FOLLOWED = ["summary", "figures", "findings", "more"];
+const FOLLOWED = ["kicker", "key", "summary", "figures", "findings", "more"];
 
 /**
  * @typedef {object} State what the server says about its run
