@@ -50,10 +50,10 @@ class Picture:
     still: str
 
     @classmethod
-    def of(cls, shape: Shape) -> Picture:
+    def of(cls, shape: Shape, wall_mm: float) -> Picture:
         from printprep.render.thumbnail import thumbnail_png
 
-        meshes = meshes_of(shape)
+        meshes = meshes_of(shape, wall_mm)
         part = meshes.meshes[0]
         png = thumbnail_png(part.vertices, part.faces, _STILL_PIXELS)
         return cls(shape, meshes, base64.b64encode(png).decode("ascii"))
@@ -74,7 +74,7 @@ def page_of_result(
     from printprep.pipeline.curve import mass_over_lean
 
     figures, profile = result.figures(), result.profile
-    picture = Picture.of(shape_of_result(result))
+    picture = Picture.of(shape_of_result(result), profile.wall_mm)
     encoded = encode(picture.meshes.meshes)
     tone, words, lead = facts.verdict(
         findings, result.tilt_deg, str(result.lean), result.lean.angle_deg
@@ -137,7 +137,7 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
     if not len(faces):
         raise InputError(f"{path.name} has no triangles.")
     part = from_arrays(vertices + np.array(figures.bounds_mm[0]) - vertices.min(axis=0), faces)
-    picture = Picture.of(shape_of_part(part, figures, profile))
+    picture = Picture.of(shape_of_part(part, figures, profile), profile.wall_mm)
     encoded = encode(picture.meshes.meshes)
     extra = () if verified is None else verified.findings
     findings = sorted_findings([*figures.findings, *extra])
@@ -186,7 +186,7 @@ def page_of_checked(
 ) -> Page:
     """The page of a file as it came: what `check` finds, its poses, and what leans would cost."""
     context, profile = found.context, found.profile
-    picture = Picture.of(shape_of_checked(found))
+    picture = Picture.of(shape_of_checked(found), profile.wall_mm)
     encoded = encode(picture.meshes.meshes)
     lean, tilt_deg = context.lean, context.stability.tilt_deg
     tone, words, lead = facts.verdict(found.findings, tilt_deg, str(lean), lean.angle_deg)

@@ -30,6 +30,9 @@ _FIRST_TOLERANCE = 1 / 20_000
 _ON_MM = 0.03
 # Pieces of a solid with less volume are what rounding leaves.
 _CRUMB_MM3 = 0.02
+# Thickness is measured up to so many walls: a ball that is no larger stays near its surface, where
+# few triangles are; in the middle of a round body all of them would be as near.
+MOST_WALLS = 4.0
 _SAMPLES = 30_000
 _NEIGHBOURS = 4
 
@@ -50,12 +53,15 @@ class Meshes:
     moved_mm: float
 
 
-def meshes_of(shape: Shape, most: int = MOST_TRIANGLES) -> Meshes:
-    """The meshes of a shape."""
+def meshes_of(shape: Shape, wall_mm: float, most: int = MOST_TRIANGLES) -> Meshes:
+    """The meshes of a shape.
+
+    wall_mm : the profile's wall; thickness is told up to MOST_WALLS times as much.
+    """
     simple, moved_mm = simplified(shape.part, most)
-    fine = _divided(simple)
+    fine = _divided(simple, most)
     vertices, faces = arrays(fine)
-    thickness = _thickness(shape.part, vertices, faces)
+    thickness = _thickness(shape.part, vertices, faces, MOST_WALLS * wall_mm)
     part = ViewMesh(
         "part",
         vertices,
@@ -93,13 +99,13 @@ def _extent(solid: Manifold) -> float:
     return max(float(box[axis + 3] - box[axis]) for axis in range(3))
 
 
-def _divided(solid: Manifold) -> Manifold:
+def _divided(solid: Manifold, most: int) -> Manifold:
     """The solid with its large triangles divided; the surface stays where it is."""
     area = float(solid.surface_area())
     edge = max((area / _DIVIDED_TRIANGLES * 4 / np.sqrt(3)) ** 0.5, _extent(solid) * _LEAST_EDGE)
     fine = solid.refine_to_length(2 * edge)
     grown = fine.num_tri() - solid.num_tri()
-    return fine if grown < 4 * _DIVIDED_TRIANGLES and fine.num_tri() <= MOST_TRIANGLES else solid
+    return fine if grown < 4 * _DIVIDED_TRIANGLES and fine.num_tri() <= most else solid
 
 
 def _solid(name: str, solid: Manifold, most: int) -> ViewMesh:
@@ -180,27 +186,25 @@ def _in_bore(drain: Drain, middles: Float) -> Bool:
     return result
 
 
-def _thickness(part: Manifold, vertices: Float, faces: Int) -> Float:
-    """(n,) mm, local thickness of the part at vertices (n, 3) of the mesh that the page shows, NaN
-    where no side of the part faces the surface.
+def _thickness(part: Manifold, vertices: Float, faces: Int, most_mm: float) -> Float:
+    """(n,) mm, local thickness of the part at vertices (n, 3) of the mesh that the page shows, at
+    most ``most_mm``.
 
     It is measured at samples of the part itself; a vertex takes the weighted mean of the nearest
     ones that face the same way.
     """
     from scipy.spatial import cKDTree
 
-    found = local_thickness(*arrays(part), samples=_SAMPLES)
-    measured_mm = np.where(np.isfinite(found.across[:, 0]), found.ball_mm, np.nan)
+    found = local_thickness(*arrays(part), samples=_SAMPLES, at_most_mm=most_mm)
     tree = cKDTree(found.points)
     distance, index = tree.query(vertices, k=2 * _NEIGHBOURS)
     normals = _vertex_normals(vertices, faces)
     same = np.einsum("nki,ni->nk", found.normals[index], normals) > 0.35
     rank = np.cumsum(same, axis=1)
     weight = np.where(same & (rank <= _NEIGHBOURS), 1 / (distance + 1e-3), 0.0)
-    weight[np.isnan(measured_mm[index])] = 0.0
     total = weight.sum(axis=1)
-    mean = (weight * np.nan_to_num(measured_mm[index])).sum(axis=1)
-    nearest = measured_mm[index[:, 0]]
+    mean = (weight * found.ball_mm[index]).sum(axis=1)
+    nearest = found.ball_mm[index[:, 0]]
     result: Float = np.where(total > 0, mean / np.where(total > 0, total, 1.0), nearest)
     return result
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from printprep.output.numbers import place, rounded
+from printprep.page.meshes import MOST_WALLS
 
 if TYPE_CHECKING:
     from printprep.page.encode import Encoded
@@ -31,6 +32,7 @@ def view_of(
     return {
         "directory": encoded.directory,
         "wallMm": wall_mm,
+        "thickestMm": MOST_WALLS * wall_mm,
         "hollowed": bool(shape.cavities) or shape.infill is not None,
         "balance": _balance(stability, centre_mm, centre_before_mm, lean),
         "findings": [

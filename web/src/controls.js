@@ -308,7 +308,11 @@ function read(viewer, event, tip) {
   if (hit === null) {
     return;
   }
-  const wall = Number.isNaN(hit.thickness) ? "no wall opposite" : `${plain(hit.thickness, 2)} mm thick`;
+  const most = viewer.view.thickestMm;
+  const wall =
+    hit.thickness < most - 0.02
+      ? `${plain(hit.thickness, 2)} mm thick`
+      : `more than ${plain(most, 1)} mm thick`;
   const { x, y, z } = hit.place;
   tip.textContent = `${wall}  ·  x ${plain(x, 1)}  y ${plain(y, 1)}  z ${plain(z, 1)}`;
   const box = canvas.getBoundingClientRect();

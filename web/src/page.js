@@ -28,6 +28,7 @@
  * @typedef {object} View
  * @property {Directory} directory
  * @property {number} wallMm
+ * @property {number} thickestMm thickness is measured up to this
  * @property {boolean} hollowed
  * @property {Balance | null} balance
  * @property {{at: number[] | null, severity: string, rule: string}[]} findings
