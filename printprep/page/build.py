@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.errors import InputError
+from printprep.files import reason_of
 from printprep.mesh.measure import from_arrays, mass_properties
 from printprep.page import facts
 from printprep.page.content import Curve, Form, Group, Page, PoseRow, Source
@@ -37,8 +39,13 @@ _STILL_PIXELS = 420
 
 
 def source_of(path: Path, command: str | None = None) -> Source:
-    """The file that a page is about.  Raises OSError where it cannot be read."""
-    return Source(path.name, hashlib.sha256(path.read_bytes()).hexdigest(), command)
+    """The file that a page is about.  Raises InputError where it cannot be read."""
+    if not path.is_file():
+        raise InputError(f"{path} does not exist.", "Check the name and the folder.")
+    try:
+        return Source(path.name, hashlib.sha256(path.read_bytes()).hexdigest(), command)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {reason_of(error)}.") from error
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +132,6 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
     Raises InputError if printprep did not write it, or if it is broken.
     """
     from printprep.check import sorted_findings
-    from printprep.errors import InputError
     from printprep.mesh.weld import weld
     from printprep.threemf.read import read_3mf
     from printprep.types import Lean

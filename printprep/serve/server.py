@@ -72,13 +72,13 @@ def serve_model(trials: Trials, *, port: int, browser: bool, tell: Callable[[str
     tell : prints a line.  Raises OutputError where the port cannot be had.
     """
     with TrialServer(trials, port) as server:
-        tell(f"The page is at {server.url}")
-        tell("Ctrl-C ends it.")
-        if browser:
-            import webbrowser
-
-            webbrowser.open(server.url)
         try:
+            tell(f"The page is at {server.url}")
+            tell("Ctrl-C ends it.")
+            if browser:
+                import webbrowser
+
+                webbrowser.open(server.url)
             server.serve_forever()
         except KeyboardInterrupt:
             tell("")

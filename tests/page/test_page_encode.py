@@ -82,9 +82,7 @@ def test_all_meshes_are_on_one_grid():
     large = ViewMesh("large", far, first.faces, first.classes, ("layer 0",))
     encoded = encode([first, shifted, large])
     found = meshes(encoded.directory, encoded.base64)
-    assert np.array_equal(
-        corners(*found["part"][:2]), corners(*found["other"][:2])
-    )
+    assert np.array_equal(corners(*found["part"][:2]), corners(*found["other"][:2]))
     assert encoded.directory["step"] == pytest.approx((500 - far[:, 0].min()) / STEPS)
 
 

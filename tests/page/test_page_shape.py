@@ -101,7 +101,9 @@ def test_thickness_is_that_of_the_wall():
     """On the faces of the block, away from its edges, the wall is 2 mm thick."""
     mesh = meshes_of(shape_of_result(hollow_result()), 2.0).meshes[0]
     place = mesh.vertices
-    side = (np.abs(place[:, 0]) > 9.999) & (np.abs(place[:, 1]) < 6) & (np.abs(place[:, 2] - 10) < 6)
+    side = (
+        (np.abs(place[:, 0]) > 9.999) & (np.abs(place[:, 1]) < 6) & (np.abs(place[:, 2] - 10) < 6)
+    )
     assert side.sum() > 20
     assert np.abs(mesh.thickness_mm[side] - 2.0).max() < 1e-6
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -80,5 +81,5 @@ def test_ticks_span_the_range_with_few_round_numbers(low, high):
     slack = 1e-6 * (high - low)
     assert found[0] <= low + slack and found[-1] >= high - slack
     assert 2 <= len(found) <= 9
-    steps = {round(b - a, 9) for a, b in zip(found, found[1:], strict=False)}
+    steps = {round(b - a, 9) for a, b in pairwise(found)}
     assert max(steps) - min(steps) < 1e-6 * max(steps)
