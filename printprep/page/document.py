@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from printprep.page.chart import drawn
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -96,6 +97,7 @@ def templates() -> Environment:
         keep_trailing_newline=True,
     )
     found.filters["ticked"] = ticked
+    found.filters["counted"] = counted
     return found
 
 
