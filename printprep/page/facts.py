@@ -112,7 +112,13 @@ def _inside(figures: Figures) -> Group:
     vaults = figures.supports
     if vaults is not None:
         value = f"on {counted(vaults.columns, 'column')}, {mass(vaults.added_g)}"
-        rows.append(Fact("Vaults", value if vaults.capitals else "none needed"))
+        rows.append(
+            Fact(
+                "Vaults",
+                value if vaults.capitals else "none needed",
+                f"for the {vaults.rule}’s overhang rule",
+            )
+        )
         if vaults.unsupported_mm2:
             rows.append(Fact("Ceiling not supported", f"{vaults.unsupported_mm2:.1f} mm²"))
     drains = figures.drains
