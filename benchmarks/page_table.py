@@ -2,8 +2,8 @@
 
     .venv/bin/python benchmarks/page_table.py
 
-The part is a hollow ball with a wavy skin.  The browser is Chromium without a graphics card, started
-anew for each page; its seconds count from the opening of the file.
+The part is a hollow ball with a wavy skin.  The browser is Chromium without a graphics card,
+started anew for each page; its seconds count from the opening of the file.
 """
 
 from __future__ import annotations
