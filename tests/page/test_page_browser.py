@@ -76,8 +76,13 @@ class Browser:
         """Click, whether or not another element covers it (a radio lies under its label)."""
         self.run("document.querySelector(arguments[0]).click()", selector)
 
+    def rest(self) -> None:
+        """Wait until the eye has arrived where it flies to."""
+        self.wait("return !document.getElementById('canvas').dataset.moving")
+
     def picture(self) -> np.ndarray:
         """(h, w, 3) what the viewer shows now, once it rests."""
+        self.rest()
         before = None
         for _ in range(40):
             time.sleep(0.12)
@@ -264,7 +269,7 @@ def test_the_bed_leans_until_the_part_tips(page):
 def test_a_finding_is_flown_to_and_marked(page):
     page.press("[data-finding='0']")
     page.wait("return !document.getElementById('marker').hidden")
-    time.sleep(0.9)
+    page.rest()
     offset = page.run(
         "const m = document.getElementById('marker').getBoundingClientRect();"
         "const v = document.getElementById('viewer').getBoundingClientRect();"
@@ -277,7 +282,7 @@ def test_a_finding_is_flown_to_and_marked(page):
 def test_a_finding_inside_is_cut_open(page):
     page.press("input[name=axis][value=off]")
     page.press("[data-finding='1']")
-    time.sleep(0.9)
+    page.rest()
     assert not page.run("return document.querySelector('input[name=axis][value=off]').checked")
     assert near(page.picture(), WALL) > 200
 
@@ -293,7 +298,7 @@ def test_the_wall_under_the_pointer_is_told_in_mm(page):
     page.press("input[name=axis][value=off]")
     page.press("[data-look=top]")
     page.press("#by-thickness")
-    time.sleep(0.9)
+    page.rest()
     assert page.find("#scale").is_displayed()
     ActionChains(page.driver).move_to_element_with_offset(page.find("#canvas"), 12, 8).perform()
     page.wait("return !document.getElementById('tip').hidden")

@@ -157,6 +157,7 @@ export class Stage {
     cancelAnimationFrame(this.#flight);
     const [eye0, target0] = [this.camera.position.clone(), this.controls.target.clone()];
     const start = performance.now();
+    this.canvas.dataset.moving = "true";
     const still = at_once || matchMedia("(prefers-reduced-motion: reduce)").matches;
     /** @param {number} now */
     const step = (now) => {
@@ -165,9 +166,11 @@ export class Stage {
       this.controls.target.lerpVectors(target0, target, eased);
       this.camera.position.lerpVectors(eye0, eye, eased);
       this.controls.update();
-      this.draw();
+      this.now();
       if (share < 1) {
         this.#flight = requestAnimationFrame(step);
+      } else {
+        delete this.canvas.dataset.moving;
       }
     };
     step(start);
