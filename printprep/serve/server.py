@@ -67,21 +67,18 @@ class TrialServer(ThreadingHTTPServer):
 
 
 def serve_model(trials: Trials, *, port: int, browser: bool, tell: Callable[[str], None]) -> None:
-    """Serve until the user interrupts.
+    """Serve until the user interrupts (KeyboardInterrupt).
 
     tell : prints a line.  Raises OutputError where the port cannot be had.
     """
     with TrialServer(trials, port) as server:
-        try:
-            tell(f"The page is at {server.url}")
-            tell("Ctrl-C ends it.")
-            if browser:
-                import webbrowser
+        tell(f"The page is at {server.url}")
+        tell("Ctrl-C ends it.")
+        if browser:
+            import webbrowser
 
-                webbrowser.open(server.url)
-            server.serve_forever()
-        except KeyboardInterrupt:
-            tell("")
+            webbrowser.open(server.url)
+        server.serve_forever()
 
 
 class _Handler(BaseHTTPRequestHandler):
