@@ -6,6 +6,7 @@
     python3 dev.py lint                                   ruff: errors and format
     python3 dev.py types                                  mypy
     python3 dev.py docs [--check]                         write the pages made from the code
+    python3 dev.py page [--check]                         check and bundle the viewer of pages (npm)
     python3 dev.py bench [PYTEST OPTIONS]                 benchmarks
 
 The environment is .venv beside this file. It is installed again when pyproject.toml has changed.
@@ -122,6 +123,10 @@ def planned(arguments: list[str], root: Path) -> Plan:
             raise UsageError("docs takes no argument but --check")
         makers = sorted((root / "docs").glob("make_*_reference.py"))
         return Plan(True, tuple((str(maker), *rest) for maker in makers), root)
+    if task == "page":
+        if rest not in ((), ("--check",)):
+            raise UsageError("page takes no argument but --check")
+        return Plan(True, ((str(root / "web" / "make.py"), *rest),), root)
     if task in ("lint", "types"):
         if rest:
             raise UsageError(f"{task} takes no arguments")

@@ -57,10 +57,14 @@ _BedSide = Annotated[float, _bounded(10, 5000)]
 
 
 class Printer(_Frozen):
-    """The machine; nozzle_mm and line_width_mm only for fdm."""
+    """The machine; nozzle_mm, line_width_mm and filament_mm only for fdm.
+
+    filament_mm : diameter of the filament, for its length; None: 1.75.
+    """
 
     nozzle_mm: float | None = _bounded(0.1, 2.0, default=None)
     line_width_mm: float | None = _bounded(0.1, 4.0, default=None)
+    filament_mm: float | None = _bounded(0.5, 5.0, default=None)
     layer_height_mm: float = _bounded(0.005, 2.0)
     first_layer_mm: float = _bounded(0.005, 2.0)
     bed_mm: tuple[_BedSide, _BedSide, _BedSide] = Field(
@@ -69,10 +73,15 @@ class Printer(_Frozen):
 
 
 class Material(_Frozen):
-    """The material of the part, as printed."""
+    """The material of the part, as printed.
+
+    price_per_kg : what a kilogram costs, in ``currency``, which is repeated as it is.
+    """
 
     name: str = Field(min_length=1, max_length=80, strict=True)
     density_g_cm3: float = _bounded(0.1, 25.0)
+    price_per_kg: float | None = _bounded(0.0, 1e6, default=None)
+    currency: str | None = Field(default=None, min_length=1, max_length=12, strict=True)
 
 
 class OverhangSettings(_Frozen):
@@ -165,7 +174,7 @@ class Profile(_Frozen):
             _within("wall_mm", self.wall_mm, printer.line_width_mm, 50.0)
             _within("min_feature_mm", self.min_feature_mm, printer.line_width_mm, 50.0)
         else:
-            for key in ("nozzle_mm", "line_width_mm"):
+            for key in ("nozzle_mm", "line_width_mm", "filament_mm"):
                 if getattr(printer, key) is not None:
                     raise _impossible(f"printer.{key}", f"has no meaning for {self.process}")
             if self.slicer.check_with is not None:

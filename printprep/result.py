@@ -15,6 +15,8 @@ from printprep.stand.lean import tilt_toward
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.density.program import Program
+    from printprep.grid.depth import Depths
     from printprep.mesh.carry import Carried
     from printprep.output.figures import (
         BaseFigures,
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
         Lean,
         Model,
         Part,
+        Plane,
         Repair,
         Simulation,
         SlicerName,
@@ -46,6 +49,21 @@ if TYPE_CHECKING:
         Stability,
         Supports,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Workings:
+    """What a part was computed from; no file contains it.
+
+    program : the linear programs;  depths : below the model's surface.
+    deep, hollowable : all deeper than the wall, and the same without the vaults; None where no
+    cavity was cut.
+    """
+
+    program: Program
+    depths: Depths
+    deep: Manifold | None
+    hollowable: Manifold | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +77,9 @@ class HollowResult:
     lean : the lean at which the part should stand.
     blocker : where the file tells a slicer to make no supports, None if nowhere.
     wall_min_mm : thinnest wall between a cavity and the outside, None without a cavity.
-    seconds : duration of each stage; no file contains it.
     paint : colours of the part's outside, carried from the model; None where it has none.
+    seconds : duration of each stage;  workings : for a picture of the inside.  No file contains
+    either.
     """
 
     model: Model
@@ -84,6 +103,7 @@ class HollowResult:
     infill: Infill | None = None
     alternative_fill: AlternativeFill | None = None
     paint: Carried | None = None
+    workings: Workings | None = None
 
     @property
     def lean_deg(self) -> float:
@@ -194,6 +214,7 @@ def _figures_of(result: HollowResult) -> Figures:
         certificate=_certificate(density.certificate),
         findings=tuple(rounded_finding(item) for item in result.findings),
         repair=rounded_repair(result.solid.repair),
+        planes=_planes(density.planes),
     )
 
 
@@ -326,6 +347,17 @@ def _base(result: HollowResult) -> BaseFigures | None:
     if base is None:
         return None
     return BaseFigures(rounded(base.seat_mm), rounded(base.growth_mm), rounded(result.base_mass_g))
+
+
+def _planes(planes: Sequence[Plane | None] | None) -> tuple[Plane | None, ...] | None:
+    if planes is None:
+        return None
+    return tuple(None if plane is None else _plane(plane) for plane in planes)
+
+
+def _plane(plane: Plane) -> Plane:
+    nx, ny, nz = (rounded(value, 9) for value in plane.normal)
+    return replace(plane, normal=(nx, ny, nz), offset_mm=rounded(plane.offset_mm, 9))
 
 
 def _certificate(certificate: Certificate | None) -> Certificate | None:

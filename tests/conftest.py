@@ -6,6 +6,7 @@ import csv
 import os
 import shutil
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 from collection import CatalogueModel
@@ -68,11 +69,30 @@ def cura_engine() -> Path:
     return _tool("CuraEngine")
 
 
+@pytest.fixture(scope="session")
+def chromium() -> tuple[Path, Path]:
+    """A real browser and its driver, likewise."""
+    return _tool("chromium"), _tool("chromedriver")
+
+
+@pytest.fixture(scope="session")
+def axe() -> str:
+    """The script of axe-core, which npm puts below web/ (`python3 dev.py page`), likewise."""
+    script = ROOT / "web" / "node_modules" / "axe-core" / "axe.min.js"
+    if not script.is_file():
+        _missing("axe-core is not installed")
+    return script.read_text(encoding="utf-8")
+
+
 def _tool(name: str) -> Path:
     found = shutil.which(name)
     if found is None:
-        message = f"{name} is not installed"
-        if _required():
-            pytest.fail(message)
-        pytest.skip(message)
+        _missing(f"{name} is not installed")
     return Path(found)
+
+
+def _missing(message: str) -> NoReturn:
+    """Skip a test whose tool is missing; where all tools are required, fail it."""
+    if _required():
+        pytest.fail(message)
+    pytest.skip(message)

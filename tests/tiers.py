@@ -12,7 +12,7 @@ from collections.abc import Generator
 
 import pytest
 
-TIERS = ("slow", "slicer", "corpus")
+TIERS = ("slow", "slicer", "corpus", "browser")
 # CI sets it, to the seconds that an unmarked test may take. Nowhere else does time decide.
 LIMIT = "PRINTPREP_TEST_LIMIT_S"
 

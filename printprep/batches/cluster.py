@@ -178,4 +178,10 @@ def _version_here() -> tuple[str, str]:
 def _absolute(job: Job) -> Job:
     from dataclasses import replace
 
-    return replace(job, model=Path(job.model).absolute(), output=Path(job.output).absolute())
+    return replace(
+        job,
+        model=Path(job.model).absolute(),
+        output=Path(job.output).absolute(),
+        plugs=None if job.plugs is None else job.plugs.absolute(),
+        report=None if job.report is None else job.report.absolute(),
+    )

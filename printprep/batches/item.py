@@ -97,11 +97,17 @@ def with_plugs(item: Item) -> Item:
     return replace(item, job=replace(item.job, plugs=plugs))
 
 
+def with_report(item: Item) -> Item:
+    """The item with a page about its part written beside it."""
+    report = item.job.output.with_suffix(".html")
+    return replace(item, job=replace(item.job, report=report))
+
+
 def refuse_clashes(items: Sequence[Item]) -> None:
     """Raise UsageError where two parts would be one file, on a system that ignores case too."""
     seen: dict[str, Item] = {}
     for item in items:
-        for path in (item.job.output, item.job.plugs):
+        for path in (item.job.output, item.job.plugs, item.job.report):
             other = item if path is None else seen.setdefault(str(path).casefold(), item)
             if other is not item:
                 raise UsageError(
@@ -123,7 +129,9 @@ def key_of(job: Job) -> str:
         return ""
     profile = load_profile(job.profile, job.overrides)
     model, output = Path(job.model.name), Path(job.output.suffix)
-    same = replace(job, model=model, output=output, plugs=None, profile="", overrides={})
+    same = replace(
+        job, model=model, output=output, plugs=None, report=None, profile="", overrides={}
+    )
     asked = {
         "version": __version__,
         "model": content,

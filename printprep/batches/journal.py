@@ -81,6 +81,8 @@ def is_complete(item: Item, row: Row | None, folder: Path) -> bool:
         return False
     if row.status != "part":
         return True
+    if item.job.report is not None and not item.job.report.is_file():
+        return False
     try:
         return sha256_of(folder / item.output) == row.output_sha256
     except OSError:

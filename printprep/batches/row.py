@@ -28,6 +28,7 @@ class Row:
     name : the input as it was named;  output : where its part goes, below the batch's folder.
     key : hash of all that the part depends on;  output_sha256 : of the written file.
     code, message, hint : of an error, as a single run prints them.
+    report : the page about it, beside its part, below the batch's folder; None where none is made.
     findings : how many of each severity;  rules : ids of warnings and errors, sorted.
     seconds : of the job;  peak_mib : of its process, None where the system does not tell.
     """
@@ -46,6 +47,7 @@ class Row:
     tilt_deg: float | None = None
     wall_min_mm: float | None = None
     cavities: int | None = None
+    report: str | None = None
     findings: Mapping[str, int] = field(default_factory=dict)
     rules: tuple[str, ...] = ()
     seconds: float | None = None

@@ -127,7 +127,9 @@ def with_profiles(items: Sequence[Item]) -> tuple[Item, ...]:
                 f"{suffix} is not a format that printprep writes.", f"Use {', '.join(SUFFIXES)}."
             )
         # But for the files, most models of a batch have the same job
-        options = repr(replace(item.job, model=Path(), output=Path(suffix), plugs=None))
+        options = repr(
+            replace(item.job, model=Path(), output=Path(suffix), plugs=None, report=None)
+        )
         if options not in checked:
             try:
                 checked[options] = check_settings(item.job)
@@ -161,7 +163,9 @@ def run_batch(planned: Planned, how: BatchOptions, client: Client | None = None)
 
 
 def _row(item: Item, told: Told) -> Row:
-    return Row(name=item.name, output=item.output, status=told.status, **told.facts)
+    made = item.job.report is not None and told.status in ("part", "stopped")
+    report = Path(item.output).with_suffix(".html").as_posix() if made else None
+    return Row(name=item.name, output=item.output, status=told.status, report=report, **told.facts)
 
 
 def _with_output(item: Item, told: Told, folder: Path) -> Told:

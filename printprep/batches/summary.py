@@ -17,21 +17,48 @@ from printprep.version import __version__
 
 if TYPE_CHECKING:
     from printprep.batches.run import Planned
+    from printprep.page.index import IndexRow
 
-CSV, JSON = "summary.csv", "summary.json"
+CSV, JSON, PAGE = "summary.csv", "summary.json", "summary.html"
 
 
-def write_summary(planned: Planned, rows: Sequence[Row]) -> tuple[Path, Path]:
-    """Write summary.csv and summary.json into the batch's folder.
+def write_summary(planned: Planned, rows: Sequence[Row]) -> tuple[Path, ...]:
+    """Write summary.csv and summary.json into the batch's folder, and summary.html where rows have
+    pages.
 
     Raises OutputError where the folder refuses.
     """
     place = {item.output: number for number, item in enumerate(planned.items)}
     ordered = sorted(rows, key=lambda row: place[row.output])
-    paths = planned.folder / CSV, planned.folder / JSON
+    paths = [planned.folder / CSV, planned.folder / JSON]
     write_atomically(paths[0], csv_text(ordered).encode("utf-8"))
     write_atomically(paths[1], to_text(summary_json(ordered)).encode("ascii"))
-    return paths
+    if any(row.report is not None for row in ordered):
+        from printprep.page.index import index_page
+
+        paths.append(planned.folder / PAGE)
+        write_atomically(paths[2], index_page(planned.folder.name, index_rows(ordered)))
+    return tuple(paths)
+
+
+def index_rows(rows: Sequence[Row]) -> tuple[IndexRow, ...]:
+    """The rows as the page that links to their pages shows them."""
+    from printprep.page.index import IndexRow
+
+    return tuple(
+        IndexRow(
+            name=row.name,
+            report=row.report,
+            status=row.status,
+            solid_mass_g=row.solid_mass_g,
+            mass_g=row.mass_g,
+            tilt_deg=row.tilt_deg,
+            errors=row.findings.get("error", 0),
+            warnings=row.findings.get("warning", 0),
+            message=row.message,
+        )
+        for row in rows
+    )
 
 
 def summary_json(rows: Sequence[Row]) -> dict[str, Any]:

@@ -58,11 +58,14 @@ def _named(facts: Mapping[str, Any], sent: Path, model: Path) -> dict[str, Any]:
 
 
 def _run(job: Job) -> Told:
+    from printprep.page.write import write_report
     from printprep.pipeline.job import run_job
 
     try:
         job.output.parent.mkdir(parents=True, exist_ok=True)
         done = run_job(job)
+        if job.report is not None:
+            write_report(done, job)
         if done.stopped:
             return Told("stopped", told_by(done, None))
         return Told("part", told_by(done, sha256_of(job.output)))

@@ -15,6 +15,8 @@ CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 80}
 _COMMANDS = {
     "hollow": "printprep.cli.hollow",
     "batch": "printprep.cli.batch",
+    "view": "printprep.cli.view",
+    "report": "printprep.cli.report",
     "check": "printprep.cli.check",
     "explore": "printprep.cli.explore",
     "verify": "printprep.cli.verify",

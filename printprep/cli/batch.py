@@ -55,6 +55,11 @@ A CSV has a column `file`, and any option above as a column:
     help="Also write plugs for the drain holes of each part, as PART-plugs.3mf.",
 )
 @click.option(
+    "--reports",
+    is_flag=True,
+    help="Also write a page about each part, as PART.html, and summary.html with links to them.",
+)
+@click.option(
     "--jobs",
     "workers",
     type=click.IntRange(1),
@@ -99,6 +104,7 @@ def command(
     output: Path,
     suffix: str,
     plugs: bool,
+    reports: bool,
     workers: int | None,
     memory_mib: float | None,
     timeout_s: float | None,
@@ -117,18 +123,22 @@ def command(
     starts. The exit code is 0 if every row is a part, else 1.
     """
     from printprep.batches.cluster import connect
-    from printprep.batches.item import with_plugs
+    from printprep.batches.item import with_plugs, with_report
     from printprep.batches.run import BatchOptions, plan, run_batch
     from printprep.batches.summary import write_summary
     from printprep.report.batch import follow
 
-    if plugs and transfer:
-        raise UsageError(
-            "--transfer brings back parts, not plugs.", "Leave out --plugs, or use a shared folder."
-        )
+    for asked, what in ((plugs, "plugs"), (reports, "reports")):
+        if asked and transfer:
+            raise UsageError(
+                f"--transfer brings back parts, not {what}.",
+                f"Leave out --{what}, or use a shared folder.",
+            )
     items = _items(inputs, options, output, f".{suffix}", fail_on)
     if plugs:
         items = [with_plugs(item) for item in items]
+    if reports:
+        items = [with_report(item) for item in items]
     how = BatchOptions(workers, memory_mib, timeout_s, resume, transfer)
     client = None if scheduler is None else connect(scheduler)
     planned: Planned = plan(items, output, resume=resume)

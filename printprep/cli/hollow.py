@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ Examples:
   printprep hollow scan.obj --up y --size 120 --lean 15
   printprep hollow figure.stl -p resin-standard --wall 2.5
   printprep hollow figure.stl --fill infill
+  printprep hollow figure.stl --report figure.html
   printprep hollow vase.stl --set printer.layer_height_mm=0.3 --json
 """
 
@@ -38,11 +40,18 @@ Examples:
     metavar="OUT.3mf",
     help="Also write tapered plugs for the drain holes, each as its own object.",
 )
+@path_option(
+    "--report",
+    metavar="OUT.html",
+    help="Also write a page about the part: one file that shows it in three dimensions, opened "
+    "along any plane, with all figures and findings. It needs no network.",
+)
 @output_form_options("none", " The part is then not written.")
 def command(
     model: Path,
     output: Path | None,
     plugs: Path | None,
+    report: Path | None,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -55,28 +64,46 @@ def command(
     profile's. Its outside is that of the model, except for a base under its feet where that saves
     material.
     """
+    from printprep.cli.shown_command import shown_command
+    from printprep.page.write import write_report
     from printprep.pipeline.job import run_job
     from printprep.progress import for_terminal
 
     target = Path(f"{model.stem}-hollow.3mf") if output is None else output
     job = job_of(options, model=model, output=target, plugs=plugs, fail_on=fail_on)
-    done = run_job(job, for_terminal(quiet=quiet))
-    _print(done, model, as_json=as_json, quiet=quiet, verbose=verbose)
+    job = replace(job, report=report)
+    progress = for_terminal(quiet=quiet)
+    done = run_job(job, progress)
+    if report is not None:
+        with progress.stage("page"):
+            write_report(done, job, shown_command())
+    _print(done, model, report, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if done.stopped else 0
 
 
-def _print(done: JobResult, model: Path, *, as_json: bool, quiet: bool, verbose: bool) -> None:
+def _print(
+    done: JobResult,
+    model: Path,
+    report: Path | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> None:
     from printprep.cli.console import print_json, stdout_console, trouble_to_stderr
     from printprep.report.json import result_json
     from printprep.report.terminal import show_result
     from printprep.report.verification import show_verified, verify_json
 
     output = None if done.written is None else str(done.written)
+    report_file = None if report is None else str(report)
     if as_json:
-        report = result_json(done.result, done.findings, model=str(model), output=output)
+        data = result_json(done.result, done.findings, model=str(model), output=output)
         if done.verified is not None:
-            report["verified"] = verify_json(done.verified, part=output)
-        print_json(report)
+            data["verified"] = verify_json(done.verified, part=output)
+        if report_file is not None:
+            data["report"] = report_file
+        print_json(data)
     elif quiet:
         trouble_to_stderr(done.findings)
     else:
@@ -85,3 +112,5 @@ def _print(done: JobResult, model: Path, *, as_json: bool, quiet: bool, verbose:
         if done.verified is not None:
             console.print()
             show_verified(console, done.verified, with_findings=False)
+        if report_file is not None:
+            console.print(f"The page about it: {report_file}", soft_wrap=True)

@@ -49,7 +49,9 @@ def run(arguments: Sequence[str]) -> int:
 
     as_json, verbose = _forms(arguments)
     try:
-        code = printprep.main(list(arguments), prog_name="printprep", standalone_mode=False)
+        code = printprep.main(
+            list(arguments), prog_name="printprep", standalone_mode=False, obj=tuple(arguments)
+        )
         return code if isinstance(code, int) else 0
     except StreamError as error:
         return _report(error.code, error.message, error.hint, error.exit_code, as_json=False)

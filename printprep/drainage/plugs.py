@@ -24,8 +24,21 @@ def plug(drain: Drain, outside: Manifold) -> Manifold:
 
     outside : the part without its cavities; its surface continues over the plug's outer end.
     """
+    back = frame(np.array(drain.axis)).T
+    piece = plug_in_place(drain, outside)
+    upright = piece.transform(np.column_stack([back, -back @ np.array(drain.centre_mm)]))
+    return upright.translate((0.0, 0.0, plug_length_mm(drain)))
+
+
+def plug_length_mm(drain: Drain) -> float:
+    """Length of a plug from its tip to the middle of the hole's mouth."""
+    return min(drain.length_mm, LONGEST * drain.diameter_mm)
+
+
+def plug_in_place(drain: Drain, outside: Manifold) -> Manifold:
+    """The plug of a drain where it closes the hole.  outside : as for :func:`plug`."""
     radius = drain.diameter_mm / 2
-    length = min(drain.length_mm, LONGEST * drain.diameter_mm)
+    length = plug_length_mm(drain)
     beyond = 2 * drain.diameter_mm  # cut off by the outside
     profile = np.array(
         [
@@ -36,12 +49,8 @@ def plug(drain: Drain, outside: Manifold) -> Manifold:
             [0.0, beyond],
         ]
     )
-    axis = np.array(drain.axis)
-    centre = np.array(drain.centre_mm)
-    piece = max((placed(profile, centre, axis) ^ outside).decompose(), key=_volume)
-    back = frame(axis).T
-    upright = piece.transform(np.column_stack([back, -back @ centre]))
-    return upright.translate((0.0, 0.0, length))
+    axis, centre = np.array(drain.axis), np.array(drain.centre_mm)
+    return max((placed(profile, centre, axis) ^ outside).decompose(), key=_volume)
 
 
 def _volume(piece: Manifold) -> float:

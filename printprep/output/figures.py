@@ -22,6 +22,7 @@ from printprep.types import (
     Certificate,
     Drain,
     Finding,
+    Plane,
     Repair,
     VaultRule,
 )
@@ -113,6 +114,8 @@ class Figures:
     placement : (4, 4) rows, model's file → part.
     mass_ratio : mass over that of the solid;  bounds_mm : low and high corner.
     contact, tilt_deg : None without contact;  bodies : number of bodies that do not touch.
+    planes : for each body the plane above which its inside is empty, None where nothing is filled;
+    None as a whole where no planes decide.
     """
 
     printprep: str
@@ -144,6 +147,7 @@ class Figures:
     certificate: Certificate | None
     findings: tuple[Finding, ...]
     repair: Repair
+    planes: tuple[Plane | None, ...] | None = None
     format: Annotated[int, Field(ge=FORMAT, le=FORMAT)] = FORMAT
 
     def to_json(self) -> dict[str, Any]:

@@ -36,6 +36,18 @@ def check_writable(path: Path) -> None:
     refuse_impossible_target(path)
 
 
+def check_page(path: Path, option: str) -> None:
+    """Check before the long work that a page can be written.
+
+    Raises UsageError for another suffix than .html, OutputError as :func:`check_writable`.
+    """
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise UsageError(
+            f"{path}: --{option} writes only .html.", "Name a file that ends in .html."
+        )
+    check_writable(path)
+
+
 def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:
     """Raise UsageError for a file that cannot carry infill and ballast."""
     if suffix.lower() != ".3mf":

@@ -84,6 +84,8 @@ def fill_with_cavity(
         supports=volume.supports,
         blocker=blocker if solved.part.cavities else None,
         drainage=solved.drainage,
+        deep=volume.deep,
+        hollowable=volume.manifold,
     )
 
 

@@ -50,22 +50,27 @@ def check(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.check import context_of_solid, run_rules, sorted_findings
-    from printprep.check.reading import reading_findings
     from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
     from printprep.stand.lean import lean_of
-    from printprep.stand.stability import stability
 
     settings = load_profile(profile, overrides or {})
     requested = lean_of(lean, settings.stability.lean_deg)
-    prepared = prepare(model, settings, placement, progress)
-    solid, part = prepared.solid, prepared.solid.manifold
+    return check_prepared(prepare(model, settings, placement, progress), requested, progress)
+
+
+def check_prepared(prepared: Prepared, lean: Lean, progress: Progress = SILENT) -> Checked:
+    """Run the rules on a model that was prepared already."""
+    from printprep.check import context_of_solid, run_rules, sorted_findings
+    from printprep.check.reading import reading_findings
+    from printprep.stand.stability import stability
+
+    solid, part, settings = prepared.solid, prepared.solid.manifold, prepared.profile
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)
         blocker = _blocker(prepared)
         context = context_of_solid(
-            part, part_stability, requested, solid.repair, prepared.model, blocker
+            part, part_stability, lean, solid.repair, prepared.model, blocker
         )
         read = reading_findings(prepared.model.notes)
         findings = sorted_findings([*read, *run_rules(context, settings)])

@@ -22,6 +22,8 @@ class Filled:
     depths, program : what it was solved with.
     stability : how the part stands;  volume_mm3 : volume of the material that prints.
     supports, blocker, drainage, infill : None where the fill has none.
+    deep, hollowable : all deeper than the wall, and the same without the vaults; None where the
+    fill cuts no cavity.
     findings : those that only the fill can make.
     """
 
@@ -37,3 +39,5 @@ class Filled:
     drainage: Drainage | None = None
     infill: Infill | None = None
     findings: tuple[Finding, ...] = ()
+    deep: Manifold | None = None
+    hollowable: Manifold | None = None

@@ -192,7 +192,7 @@ def result_of(
 ) -> HollowResult:
     """Everything that ``hollow`` returns, as one value."""
     from printprep.output.colours import carried_paint
-    from printprep.result import HollowResult
+    from printprep.result import HollowResult, Workings
     from printprep.stand.stability import stability
 
     solid, profile = prepared.solid, filled.profile
@@ -218,4 +218,5 @@ def result_of(
         alternative_fill=alternative,
         paint=carried_paint(prepared.model, filled.part, solid.repair),
         seconds={str(stage): value for stage, value in seconds.items()},
+        workings=Workings(filled.program, filled.depths, filled.deep, filled.hollowable),
     )

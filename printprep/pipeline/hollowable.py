@@ -26,13 +26,15 @@ if TYPE_CHECKING:
 class Hollowable:
     """All that may be cavity.
 
-    manifold : the volume without the vaults;  depths : below the model's surface, on the grid.
+    manifold : the volume without the vaults;  deep : with them, all deeper than the wall.
+    depths : below the model's surface, on the grid.
     supports : the vaults, None if there are none.
     blocker : where a slicer makes no supports, None where vaults keep the slicer's rule.
     profile : the profile with the settings that follow from the vaults.
     """
 
     manifold: Manifold
+    deep: Manifold
     depths: Depths
     supports: Supports | None
     blocker: Manifold | None
@@ -61,15 +63,15 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
             margin_mm=profile.stability.base_growth_max_mm,
         )
     with progress.stage("cavity"):
-        manifold = cavity_surface(solid.manifold, depths.field, profile.wall_mm)
-    if manifold.is_empty() or not profile.traits.ceilings_sag:
-        return Hollowable(manifold, depths, None, None, profile)
+        deep = cavity_surface(solid.manifold, depths.field, profile.wall_mm)
+    if deep.is_empty() or not profile.traits.ceilings_sag:
+        return Hollowable(deep, deep, depths, None, None, profile)
     with progress.stage("supports"):
-        return _vaulted(manifold, depths, prepared, vault_choice(options.vaults, profile), options)
+        return _vaulted(deep, depths, prepared, vault_choice(options.vaults, profile), options)
 
 
 def _vaulted(
-    volume: Manifold, depths: Depths, prepared: Prepared, choice: VaultChoice, options: FillOptions
+    deep: Manifold, depths: Depths, prepared: Prepared, choice: VaultChoice, options: FillOptions
 ) -> Hollowable:
     """The hollowable volume with the vaults of a choice, and with the blocker that they count on.
 
@@ -78,7 +80,7 @@ def _vaulted(
     profile, blocker = prepared.profile, None
     if choice != "slicer":
         assert depths.field is not None  # the volume is not empty
-        blocker = support_blocker(prepared.solid.manifold, depths.field, volume, profile)
+        blocker = support_blocker(prepared.solid.manifold, depths.field, deep, profile)
     if choice == "printer" and blocker is None:
         if options.vaults is not None:
             raise UsageError(
@@ -89,11 +91,11 @@ def _vaulted(
         choice = "slicer"
     if choice == "none":
         kept = profile if blocker is None else _without_plate_only(profile)
-        return Hollowable(volume, depths, None, blocker, kept)
-    volume, supports = supported(volume, profile, choice)
+        return Hollowable(deep, deep, depths, None, blocker, kept)
+    volume, supports = supported(deep, profile, choice)
     sure = blocker is not None or not (supports.unsupported_mm2 > 0 or supports.islands)
     kept = _without_plate_only(profile) if sure else profile
-    return Hollowable(volume, depths, supports, blocker, kept)
+    return Hollowable(volume, deep, depths, supports, blocker, kept)
 
 
 def _without_plate_only(profile: Profile) -> Profile:

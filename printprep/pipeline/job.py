@@ -31,6 +31,7 @@ class Job:
     overrides : profile keys to change, a key in a table as "table.key".
     output : the file for the part;  written_for : the slicer it is written for.
     plugs : the file for plugs of its drain holes, None for no plugs.
+    report : the file for a page about the part, which the caller writes; None for no page.
     simulate : simulate the part in a physics engine;  verify : slice it and measure the G-code.
     fail_on : write nothing if a finding is at least this severe; None writes always.
     """
@@ -43,6 +44,7 @@ class Job:
     options: FillOptions = field(default_factory=FillOptions)
     written_for: SlicerName = "prusa"
     plugs: Path | None = None
+    report: Path | None = None
     simulate: bool = False
     verify: bool = False
     fail_on: Severity | None = None
@@ -103,7 +105,10 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     if job.simulate:
         with progress.stage("simulate"):
             result = _simulated(result)
-    verified = verify_result(result, progress=progress) if job.verify else None
+    compared = job.model if job.report is not None and _is_mesh(job.model) else None
+    verified = (
+        verify_result(result, compare_with=compared, progress=progress) if job.verify else None
+    )
     # A print depends on the slicer: its findings are reported, but not written into the part.
     print_findings = () if verified is None else verified.findings
     findings = sorted_findings([*result.findings, *print_findings])
@@ -139,6 +144,7 @@ def check_job(job: Job) -> Profile:
         )
     profile = check_settings(job)
     _check_plugs(job)
+    _check_report(job)
     return profile
 
 
@@ -194,6 +200,26 @@ def _check_plugs(job: Job) -> None:
                 f"{job.plugs} is the {noun}, which would be replaced.",
                 "Name another file with --plugs.",
             )
+
+
+def _check_report(job: Job) -> None:
+    from printprep.output.limits import check_page
+
+    if job.report is None:
+        return
+    check_page(job.report, "report")
+    for file, noun in ((job.output, "part"), (job.model, "model"), (job.plugs, "file of plugs")):
+        if file is not None and job.report.resolve() == file.resolve():
+            raise UsageError(
+                f"{job.report} is the {noun}, which would be replaced.",
+                "Name another file with --report.",
+            )
+
+
+def _is_mesh(model: Path) -> bool:
+    from printprep.generators.read import SUFFIXES
+
+    return model.suffix.lower() not in SUFFIXES
 
 
 def _plug_findings(drainage: Drainage | None, plugs: Path) -> tuple[Finding, ...]:

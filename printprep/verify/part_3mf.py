@@ -65,7 +65,7 @@ def computed_part(path: str | Path) -> ComputedPart:
     if path.is_file() and path.suffix.lower() != ".3mf":
         raise InputError(f"{path.name} is not a 3MF, so it carries no figures.", _HOLLOW_IT)
     content = read_3mf(path)
-    figures, profile = _figures(path, content.attachments)
+    figures, profile = figures_of(path, content.attachments)
     manifold, status = try_manifold(*weld(content.vertices, content.faces))
     if manifold.is_empty():
         raise InputError(
@@ -95,8 +95,11 @@ def computed_part(path: str | Path) -> ComputedPart:
     )
 
 
-def _figures(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Profile]:
-    """The figures in a 3MF, and their profile."""
+def figures_of(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Profile]:
+    """The figures in a 3MF, and their profile.
+
+    Raises InputError if printprep did not write the file, or another version did.
+    """
     from printprep.output.figures import Figures
     from printprep.profiles import Profile
     from printprep.threemf.read import ATTACHMENT

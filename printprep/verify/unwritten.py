@@ -33,8 +33,12 @@ def check_verifiable(target: Path, profile: Profile) -> None:
     find_slicer()
 
 
-def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verified:
+def verify_result(
+    result: HollowResult, *, compare_with: Path | None = None, progress: Progress = SILENT
+) -> Verified:
     """Slice the 3MF of ``result`` before it is written, and compare.
+
+    compare_with : the model, to slice it with usual infills too; None for the part alone.
 
     Raises what :func:`printprep.verify.run.verify` raises.
     """
@@ -44,4 +48,4 @@ def verify_result(result: HollowResult, *, progress: Progress = SILENT) -> Verif
     with scratch_folder() as folder:
         part = folder / "part.3mf"
         part.write_bytes(part_bytes(result.contents(), part.suffix))
-        return verify(part, progress=progress)
+        return verify(part, compare_with=compare_with, progress=progress)

@@ -18,7 +18,7 @@ from printprep.cli.app import printprep
 
 ROOT = Path(__file__).resolve().parents[2]
 DEV = ROOT / "dev.py"
-TASKS = ("test", "lint", "types", "docs", "bench")
+TASKS = ("test", "lint", "types", "docs", "page", "bench")
 
 
 def load() -> ModuleType:
