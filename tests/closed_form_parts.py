@@ -38,12 +38,16 @@ def hollow_box(size: float, wall: float) -> Manifold:
 
 def roofed(deg: float, size: float = 20.0, wall: float = 2.0) -> Manifold:
     """A block with a cavity under a pyramid whose sides lean ``deg`` from the vertical."""
+    rise = (size / 2 - wall) / math.tan(math.radians(deg))
+    return box(size, wall + rise + wall) - roofed_cavity(deg, size, wall)
+
+
+def roofed_cavity(deg: float, size: float = 20.0, wall: float = 2.0) -> Manifold:
+    """The cavity of ``roofed``."""
     half = size / 2 - wall
     rise = half / math.tan(math.radians(deg))
     floor = [(x, y, wall) for x in (-half, half) for y in (-half, half)]
-    return box(size, wall + rise + wall) - Manifold.hull_points(
-        np.array([*floor, (0.0, 0.0, wall + rise)])
-    )
+    return Manifold.hull_points(np.array([*floor, (0.0, 0.0, wall + rise)]))
 
 
 def context(part: Manifold, **changes: object) -> CheckContext:

@@ -29,12 +29,14 @@ class Case:
     """A file and what must be said of it, no more and no less.
 
     expected : rules with their severities, as "rule:e" (error), ":w" (warning) or ":i" (info).
+    blocker : where the file tells a slicer to make no supports.
     """
 
     name: str
     process: str
     build: Callable[[], Manifold | Triangles]
     expected: str = ""
+    blocker: Callable[[], Manifold] | None = None
 
     @property
     def wanted(self) -> set[tuple[str, str]]:
@@ -52,7 +54,8 @@ def found_in(case: Case) -> tuple[Finding, ...]:
     model = Model(vertices - middle, faces, np.eye(4), case.name)
     solid = repair(model)
     standing = stability(solid.manifold, profile.printer.first_layer_mm)
-    context = context_of_solid(solid.manifold, standing, Lean(10.0), solid.repair, model)
+    blocker = None if case.blocker is None else case.blocker()
+    context = context_of_solid(solid.manifold, standing, Lean(10.0), solid.repair, model, blocker)
     return run_rules(context, profile)
 
 
@@ -206,6 +209,21 @@ CASES: tuple[Case, ...] = (
     Case("a cube in powder", "powder", lambda: box(20)),
     Case("a turned cube", "fdm", lambda: box(20).rotate((0, 0, 33))),
     # walls around cavities
+    Case(
+        "a roof of 45° in a blocker", "fdm", lambda: roofed(45), _SHUT, lambda: box(18, 10, 1),
+    ),
+    Case(
+        "a roof of 45° in a blocker no larger than the cavity", "fdm", lambda: roofed(45),
+        f"{_SHUT} support-blocker:w", lambda: roofed_cavity(45),
+    ),
+    Case(
+        "a roof of 45° in a blocker as large as the part", "fdm", lambda: roofed(45),
+        f"{_SHUT} support-blocker:w", lambda: box(20, 12),
+    ),
+    Case(
+        "a flat ceiling in a blocker", "fdm", lambda: hollow_box(20, 2),
+        f"{_SHUT} unsupported-ceiling:w", lambda: box(18, 18, 1),
+    ),
     Case("a cavity in a wall of 1.16 mm", "fdm", lambda: hollow_box(20, 1.16), _SHUT),
     Case(
         "a cavity in a wall of 1.14 mm",

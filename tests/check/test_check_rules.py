@@ -50,6 +50,7 @@ def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
         "repaired",
         "sealed-cavity",
         "self-intersection",
+        "support-blocker",
         "suction-cup",
         "tilt",
         "tiny-model",
