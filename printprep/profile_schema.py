@@ -170,6 +170,14 @@ class Profile(_Frozen):
         return PROCESSES[self.process]
 
     @property
+    def crumb_mm3(self) -> float:
+        """Volume below which a body or a void is a crumb that no printer makes.
+
+        It is the least feature in one layer: a dot of min_feature_mm.
+        """
+        return self.min_feature_mm**2 * self.printer.layer_height_mm
+
+    @property
     def object_settings(self) -> Mapping[str, str]:
         """Slicer keys of every object in the 3MF: the profile's, and walls made of perimeters only.
 

@@ -91,6 +91,19 @@ def base_option(command: Command) -> Command:
     )(command)
 
 
+def voids_option(command: Command) -> Command:
+    """What becomes of the model's own sealed voids."""
+    return click.option(
+        "--voids",
+        type=click.Choice(("fill", "keep")),
+        default="fill",
+        show_default=True,
+        help="What becomes of sealed voids that the model brings. fill: they are filled before "
+        "anything is hollowed, but for those that hold a body of their own (a rattle). keep: all "
+        "of them stay, with vaults and drain holes where the process needs them.",
+    )(command)
+
+
 def self_support_option(command: Command) -> Command:
     """Whether vaults carry the ceilings of cavities."""
     return click.option(

@@ -20,6 +20,7 @@ from printprep.cli.options import (
     severity_of,
     slicer_option,
     together,
+    voids_option,
 )
 from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
 from printprep.output.manual_settings import SLICERS
@@ -82,6 +83,7 @@ def part_options(command: Command) -> Command:
             help="Device for --solver adam: cpu, cuda or cuda:N.",
         ),
         base_option,
+        voids_option,
         click.option(
             "--simulate",
             is_flag=True,
@@ -152,6 +154,7 @@ def job_of(
             objective=given["objective"],
             solver=Solver(given["solver_name"], given["device"]),
             base=given["base"],
+            voids=given["voids"],
             self_support=given["self_support"],
             slicer=given["slicer"],
         ),

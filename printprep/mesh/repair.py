@@ -19,7 +19,7 @@ from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
 from printprep.mesh.remesh import remeshed
 from printprep.mesh.sample import points_on_surface
-from printprep.mesh.shells import Candidate, Refusal, united
+from printprep.mesh.shells import DUST_MM3, Candidate, Refusal, united
 from printprep.mesh.winding_columns import winding_at
 from printprep.types import Model, Repair, Rung, Solid
 
@@ -33,8 +33,10 @@ _SEED = 20140801
 _FLAT = 1e-9  # smallest extent over largest, below which a model is flat
 
 
-def repair(model: Model) -> Solid:
+def repair(model: Model, crumb_mm3: float = DUST_MM3) -> Solid:
     """The solid that a model describes, on the bed, with a record of the repair.
+
+    crumb_mm3 : bodies and voids of less volume are left out, unless the whole model is that small.
 
     Raises
     ------
@@ -47,7 +49,7 @@ def repair(model: Model) -> Solid:
     _refuse_empty(model, reference)
     skipped: list[str] = []
     reasons: list[str] = []
-    for rung, offer in _ladder(model.vertices, faces):
+    for rung, offer in _ladder(model.vertices, faces, crumb_mm3):
         if isinstance(offer, Refusal):
             reasons.append(f"{rung}: {offer.reason}")
             if offer.skipped:
@@ -63,10 +65,12 @@ def repair(model: Model) -> Solid:
     )
 
 
-def _ladder(vertices: Float, faces: Int) -> Iterator[tuple[Rung, Candidate | Refusal]]:
+def _ladder(
+    vertices: Float, faces: Int, crumb_mm3: float
+) -> Iterator[tuple[Rung, Candidate | Refusal]]:
     """What each rung gives, gentlest first; vertices : (n, 3) mm, faces : (m, 3)."""
-    yield "union", united(vertices, faces)
-    for offer in mended(vertices, faces):
+    yield "union", united(vertices, faces, crumb_mm3)
+    for offer in mended(vertices, faces, crumb_mm3):
         yield "meshlab", offer
     yield "remesh", remeshed(vertices, faces)
 

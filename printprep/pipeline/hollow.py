@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 
 from printprep.objectives import DEFAULT_OBJECTIVE, PLANE, Solver, check_solver, objective_of
 from printprep.pipeline.fills import fill_of
-from printprep.pipeline.options import FillOptions, Placement, check_resolution, drain_keys
+from printprep.pipeline.options import (
+    FillOptions,
+    Placement,
+    VoidPolicy,
+    check_resolution,
+    drain_keys,
+)
 from printprep.progress import SILENT, Progress, Stage, Stopwatch
 
 if TYPE_CHECKING:
@@ -39,12 +45,14 @@ def hollow_with(
     from printprep.check import run_rules, sorted_findings
     from printprep.pipeline.alternative_fill import alternative_fill
     from printprep.pipeline.prepare import prepare
+    from printprep.pipeline.voids import settle_voids
     from printprep.stand.lean import lean_of
 
     lean = lean_of(options.lean, profile.stability.lean_deg)
     check_options(profile, options)
     clock = Stopwatch(progress)
     prepared = prepare(model, profile, placement, clock)
+    prepared = settle_voids(prepared, options, clock)
     filled = fill_of(options.fill).run(prepared, options, lean, clock)
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
@@ -73,6 +81,7 @@ def hollow(
     solver: str = PLANE,
     device: str = "cpu",
     base: BasePolicy = "auto",
+    voids: VoidPolicy = "fill",
     self_support: bool | None = None,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
@@ -99,6 +108,8 @@ def hollow(
         as in the paper, on a torch ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet: "auto" (where that saves material),
         "never", "always".
+    voids : "fill" fills the sealed voids that the model brings, but for those that hold a body of
+        their own, before anything is hollowed; "keep" leaves all of them.
     self_support : whether vaults carry the ceilings of cavities; None: if the process needs them.
     drains : least number of drain holes in each cavity, 0 for none;  drain_diameter_mm : their
         diameter.  None takes the profile's.
@@ -122,6 +133,7 @@ def hollow(
         objective=objective,
         solver=Solver(solver, device),
         base=base,
+        voids=voids,
         self_support=self_support,
         slicer=slicer,
     )
@@ -192,10 +204,10 @@ def result_of(
         part=filled.part,
         profile=profile,
         density=filled.density,
-        stability_solid=stability(solid.manifold, profile.printer.first_layer_mm),
+        stability_solid=stability(solid.whole, profile.printer.first_layer_mm),
         stability=filled.stability,
         lean=context.lean,
-        solid_mass_g=solid.manifold.volume() * grams_per_mm3,
+        solid_mass_g=solid.whole.volume() * grams_per_mm3,
         mass_g=filled.volume_mm3 * grams_per_mm3,
         wall_min_mm=None if context.wall is None else context.wall.value_mm,
         findings=findings,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from printprep.cavity.surface import cavity_surface
+from printprep.cavity.ties import tied
 from printprep.supports.policy import supported, supports_wanted
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
             margin_mm=profile.stability.base_growth_max_mm,
         )
     with progress.stage("cavity"):
-        manifold = cavity_surface(solid.manifold, depths.field, profile.wall_mm)
+        manifold = tied(cavity_surface(solid.manifold, depths.field, profile.wall_mm))
     if manifold.is_empty() or not supports_wanted(options.self_support, profile):
         return Hollowable(manifold, depths, None, profile)
     with progress.stage("supports"):

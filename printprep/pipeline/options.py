@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from printprep.errors import UsageError
 from printprep.objectives import DEFAULT_OBJECTIVE, Solver
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from printprep.density.program import BasePolicy
     from printprep.types import Lean
+
+VoidPolicy = Literal["fill", "keep"]
 
 FINEST, COARSEST = 512, 8  # voxels along the longest side
 
@@ -49,6 +51,7 @@ class FillOptions:
     resolution : voxels along the longest side.
     objective, solver : a name in :data:`printprep.objectives.OBJECTIVES`, and how it is solved.
     base : whether material may be added around the feet.
+    voids : whether the model's own sealed voids are filled before hollowing, or stay.
     self_support : whether vaults carry ceilings; None: if ceilings sag in the profile's process.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
@@ -60,6 +63,7 @@ class FillOptions:
     objective: str = DEFAULT_OBJECTIVE
     solver: Solver = field(default_factory=Solver)
     base: BasePolicy = "auto"
+    voids: VoidPolicy = "fill"
     self_support: bool | None = None
     slicer: Path | None = None
 

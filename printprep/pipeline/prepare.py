@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from printprep.errors import UsageError
 from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import Progress
+from printprep.types import ModelVoids
 
 if TYPE_CHECKING:
     import trimesh
@@ -19,11 +20,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A model that is ready: its own triangles, placed, and the solid made from them."""
+    """A model that is ready: its own triangles, placed, and the solid made from them.
+
+    voids : what became of its sealed voids.
+    """
 
     model: Model
     solid: Solid
     profile: Profile
+    voids: ModelVoids = ModelVoids()
 
 
 def prepare(
@@ -43,7 +48,7 @@ def prepare(
     with progress.stage("read"):
         placed = placed_model(model, placement)
     with progress.stage("repair"):
-        solid = repair(placed)
+        solid = repair(placed, profile.crumb_mm3)
         if placement.pose is not None:
             placed, solid = _posed(placed, solid, placement.pose)
     return Prepared(placed, solid, profile)
