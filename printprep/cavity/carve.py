@@ -11,6 +11,7 @@ import numpy as np
 from printprep.grid.balls import deepest_points
 from printprep.grid.distance import Surface
 from printprep.mesh.quantize import quantized
+from printprep.mesh.sealed_voids import sealed_voids
 from printprep.mesh.shell_figures import pieces, without_crumbs
 from printprep.types import Base, Part, Plane, Solid
 
@@ -68,11 +69,16 @@ def make_part(
     """
     from manifold3d import Manifold, OpType
 
-    outside = solid.whole if base is None else solid.whole + base.manifold
+    outside = solid.whole if base is None else _on_base(solid.whole, base.manifold)
     voids = (*cavities, *solid.kept)
     whole = Manifold.batch_boolean([outside, *voids], OpType.Subtract)
     part = finished(whole, crumb_mm3)
     return Part(part, outside, voids, base, solid.name, solid.placement, solid.kept)
+
+
+def _on_base(solid: Manifold, base: Manifold) -> Manifold:
+    """The solid with its base; what the base closes off from the air is filled."""
+    return sealed_voids(solid + base).whole
 
 
 def finished(whole: Manifold, crumb_mm3: float) -> Manifold:

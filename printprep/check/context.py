@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from printprep.check.walls import Wall, united, wall_min_mm
+from printprep.check.walls import Enclosed, Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Advice, Drainage, Lean, Model, Repair, Stability
+from printprep.types import Advice, Drainage, Lean, Model, ModelVoids, Repair, Stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from manifold3d import Manifold
 
-    from printprep.drainage.trapped import Cup, Pocket
+    from printprep.drainage.trapped import Chamber, Cup, Pocket
     from printprep.mesh.self_intersections import SelfIntersections
     from printprep.thickness import Thin
 
@@ -27,9 +27,8 @@ class CheckContext:
     """The part to check, on the bed, z up, in mm.
 
     part : the whole part as it is or will be written (float32 coordinates, ``quantized``).
-    outside : the surface that walls are measured to: for a part that printprep made, the model with
-    its base and the voids it already had; for a file, its outer shells.
-    cavities : positive solids, disjoint from the material.
+    outside : what the outermost shells enclose.
+    cavities : positive solids that are sealed, disjoint from the material.
     stability : how the part stands;  lean : the lean at which it should stand.
     repair : how the file was made into a solid.
     hollowed : True for a part that printprep made, False for a file as it came.
@@ -37,7 +36,11 @@ class CheckContext:
     reachable_deg : the largest lean any filling reaches, None where the requested lean is feasible.
     advice : what would make the lean feasible; it comes with ``reachable_deg``.
     drainage : how the part drains, None where no drains were requested.
-    raw : the triangles of a file as read and placed; None for a part that printprep made.
+    raw : the triangles of the file, as read and placed or as they will be written.
+    voids : what became of the voids that the model brought.
+    drained : cavities that printprep made and that drain holes open.
+    walls : solids with cavities, between which the wall is measured; none for ``outside`` with
+    ``cavities``.
 
     What several rules need is measured once.
     """
@@ -54,6 +57,9 @@ class CheckContext:
     advice: Advice | None = None
     drainage: Drainage | None = None
     raw: Model | None = None
+    voids: ModelVoids = ModelVoids()
+    drained: tuple[Manifold, ...] = ()
+    walls: tuple[Enclosed, ...] = ()
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
@@ -64,7 +70,8 @@ class CheckContext:
     @cached_property
     def wall(self) -> Wall | None:
         """The thinnest wall between cavities and outside, None without a cavity."""
-        return wall_min_mm(self)
+        found = [wall_min_mm(pair) for pair in self.walls or (self,)]
+        return min((wall for wall in found if wall is not None), default=None)
 
     @cached_property
     def self_intersections(self) -> SelfIntersections | None:
@@ -92,6 +99,12 @@ class CheckContext:
 
         return self._kept("pockets", diameter_mm, lambda: trapped(self.part, diameter_mm))
 
+    def chambers(self, diameter_mm: float) -> tuple[Chamber, ...]:
+        """The enclosed spaces with ways out, on the grid for holes of this diameter."""
+        from printprep.drainage.trapped import chambers
+
+        return self._kept("chambers", diameter_mm, lambda: chambers(self.part, diameter_mm))
+
     @cached_property
     def cups(self) -> tuple[Cup, ...]:
         """The suction cups that form while the part prints."""
@@ -111,14 +124,14 @@ class CheckContext:
         return {}
 
 
-def context_of_solid(
-    part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
-) -> CheckContext:
-    """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside.
+def separated(part: Manifold) -> tuple[Manifold, tuple[Manifold, ...]]:
+    """The solid inside a part's outermost shells, and its sealed cavities.
 
-    A loose piece inside a cavity belongs to neither; its volume is subtracted from the cavity.
+    A loose body inside a cavity belongs to neither; its volume is subtracted from the cavity.
     """
     solids, voids = shells(part)
+    if not voids:
+        return part, ()
     outer, rest = [], list(voids)
     for solid in solids:
         around = innermost(solid, voids)
@@ -126,10 +139,18 @@ def context_of_solid(
             outer.append(solid)
         else:
             rest[around] = rest[around] - solid
+    return united(outer), tuple(rest)
+
+
+def context_of_solid(
+    part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
+) -> CheckContext:
+    """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside."""
+    outside, cavities = separated(part)
     return CheckContext(
         part=part,
-        outside=united(outer),
-        cavities=tuple(rest),
+        outside=outside,
+        cavities=cavities,
         stability=stability,
         lean=lean,
         repair=repair,

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 # Less surface than this is a tip, which is meant to be thin.
 LEAST_MM2 = 5.0
+# Thin places closer than this belong to one pin.
+LINK_MM = 3.0
+# Material thinner than this is a sliver between surfaces that nearly coincide: nothing prints it.
+SLIVER_MM = 0.02
 
 
 @rule("min-feature")
@@ -26,17 +30,20 @@ def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """
     limit = FACETED * profile.min_feature_mm
     thin = context.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
-    rods = thin.only((thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm))
-    if rods.total_mm2 < LEAST_MM2:
+    slender = (thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm)
+    rods = thin.only(slender & (thin.thick_mm >= SLIVER_MM))
+    pins = [pin for pin in rods.patches(LINK_MM) if pin.total_mm2 >= LEAST_MM2]
+    if not pins:
         return
-    least, place = rods.thinnest
+    least, place = min(pin.thinnest for pin in pins)
+    total_mm2 = sum(pin.total_mm2 for pin in pins)
     yield finding(
         "min-feature",
         f"A pin or rod is {least:.2f} mm thick; it should be {profile.min_feature_mm:g} mm "
-        f"({rods.total_mm2:.0f} mm² of surface).",
+        f"({total_mm2:.0f} mm² of surface).",
         "Make it thicker, or scale the model up (--size).",
         value=least,
         limit=profile.min_feature_mm,
         at_mm=place,
-        area_mm2=rods.total_mm2,
+        area_mm2=total_mm2,
     )

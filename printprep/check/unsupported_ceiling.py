@@ -24,13 +24,13 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
     It applies the slicer's own rule for supports, layer by layer.  A single island is enough, since
     it prints in mid-air.
     """
-    if not profile.traits.ceilings_sag or not context.cavities:
+    if not profile.traits.ceilings_sag or not (context.cavities or context.drained):
         return
     from printprep.check.walls import united
     from printprep.overhang.limits import acceptance
     from printprep.overhang.rule import unsupported_ceilings
 
-    ceilings = unsupported_ceilings(united(context.cavities), acceptance(profile))
+    ceilings = unsupported_ceilings(united((*context.cavities, *context.drained)), acceptance(profile))
     worst = ceilings.worst
     if worst is None or (ceilings.area_mm2 <= AREA_MM2 and not ceilings.islands):
         return

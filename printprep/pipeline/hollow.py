@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,14 +19,16 @@ from printprep.progress import SILENT, Progress, Stage, Stopwatch
 
 if TYPE_CHECKING:
     import trimesh
+    from manifold3d import Manifold
 
     from printprep.check.context import CheckContext
+    from printprep.check.walls import Enclosed
     from printprep.density.program import BasePolicy
     from printprep.pipeline.filled import Filled
     from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Advice, AlternativeFill, Finding, Lean
+    from printprep.types import Advice, AlternativeFill, Finding, Lean, Part, Solid
 
 
 def hollow_with(
@@ -165,14 +167,28 @@ def advise(prepared: Prepared, filled: Filled, lean: Lean, progress: Progress) -
 def context_of(
     prepared: Prepared, filled: Filled, lean: Lean, advice: Advice | None
 ) -> CheckContext:
-    """The part as the rules look at it."""
-    from printprep.check import CheckContext
+    """The part as the rules look at it: the triangles that will be written, as of any file.
 
-    part = filled.part
+    So whatever ``check`` says of the file, ``hollow`` says too.  Walls are measured from the
+    cavities to the surface of the model.
+    """
+    from printprep.check import CheckContext
+    from printprep.check.context import separated
+    from printprep.mesh.quantize import quantized_arrays
+    from printprep.types import Model
+
+    part, solid = filled.part, prepared.solid
+    outside, sealed = separated(part.manifold)
+    opened = bool(filled.drainage is not None and filled.drainage.drains)
+    vertices, faces = quantized_arrays(part.manifold)
     return CheckContext(
         part=part.manifold,
-        outside=part.outside,
-        cavities=part.cavities,
+        outside=outside,
+        cavities=sealed,
+        drained=part.cavities if opened else (),
+        walls=walls_of(part, solid, sealed if not opened else part.cavities),
+        raw=Model(vertices, faces, part.placement, part.name),
+        voids=prepared.voids,
         stability=filled.stability,
         lean=lean,
         repair=prepared.solid.repair,
@@ -182,6 +198,28 @@ def context_of(
         advice=advice,
         drainage=filled.drainage,
     )
+
+
+def walls_of(part: Part, solid: Solid, cavities: Sequence[Manifold]) -> tuple[Enclosed, ...]:
+    """Between what the walls of a part are measured: its cavities, its outside, voids that stay.
+
+    cavities : of the part as it will be written, or before drain holes opened them.
+    """
+    from printprep.check.context import separated
+    from printprep.check.walls import Enclosed
+
+    around, holding = separated(part.outside)
+    pairs = [Enclosed(around, (*cavities, *holding) if holding else tuple(cavities))]
+    if holding:
+        pairs.append(Enclosed(part.outside, part.cavities))
+    if part.kept:
+        cut = tuple(
+            cavity
+            for cavity in part.cavities
+            if not any((cavity ^ void).volume() > 0 for void in part.kept)
+        )
+        pairs.append(Enclosed(solid.manifold, cut))
+    return tuple(pairs)
 
 
 def result_of(
