@@ -41,6 +41,7 @@ def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
         "lean-out-of-reach",
         "min-feature",
         "no-contact",
+        "no-vent",
         "non-manifold-edges",
         "nothing-to-hollow",
         "open-surface",
@@ -55,6 +56,8 @@ def test_every_rule_has_an_id_of_its_own_and_says_what_it_prevents():
         "tiny-model",
         "trapped-volume",
         "unsupported-ceiling",
+        "void-filled",
+        "void-kept",
         "wall-thickness",
         "watertight",
     }
