@@ -37,6 +37,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     (
         "printprep.arrays",
         "printprep.errors",
+        "printprep.machine_memory",
         "printprep.process",
         "printprep.processors",
         "printprep.progress",

@@ -91,6 +91,18 @@ def base_option(command: Command) -> Command:
     )(command)
 
 
+def max_memory_option(command: Command) -> Command:
+    """How much memory a run may take."""
+    return click.option(
+        "--max-memory",
+        "max_memory_mib",
+        type=click.FloatRange(min=0, min_open=True),
+        metavar="MIB",
+        help="Refuse a model that would take more memory than this, by an estimate made once it is "
+        "read. Default: what the machine has free.",
+    )(command)
+
+
 def voids_option(command: Command) -> Command:
     """What becomes of the model's own sealed voids."""
     return click.option(

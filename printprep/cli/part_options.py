@@ -11,6 +11,7 @@ from printprep.cli.drains import drain_options
 from printprep.cli.options import (
     Command,
     base_option,
+    max_memory_option,
     overrides,
     placement_of,
     placement_options,
@@ -126,6 +127,7 @@ def part_options(command: Command) -> Command:
             "PrusaSlicer that weighs prints with infill. Default: PRINTPREP_SLICER, or the one "
             "installed; without one the weight is estimated."
         ),
+        max_memory_option,
     )(command)
 
 
@@ -157,6 +159,7 @@ def job_of(
             voids=given["voids"],
             self_support=given["self_support"],
             slicer=given["slicer"],
+            max_memory_mib=given["max_memory_mib"],
         ),
         written_for=given["written_for"],
         plugs=plugs,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.errors import UsageError
+from printprep.errors import GeometryError, UsageError
 from printprep.types import Model
 
 if TYPE_CHECKING:
@@ -58,12 +58,20 @@ def place(
     ------
     UsageError : two of these at once, one that is not a positive number, an unknown axis, or a
         height for a mesh that is flat.
+    GeometryError : no number holds the size.
     """
     turn = rotation(up)
     turned = raw.vertices @ turn.T
     extents = turned.max(axis=0) - turned.min(axis=0)
     factor = _factor(extents, scale, height_mm, size_mm)
-    scaled = turned * factor
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = turned * factor
+    if not (math.isfinite(factor) and np.isfinite(scaled).all()):
+        raise GeometryError(
+            f"{raw.name} is {float(extents.max()):.3g} mm long, which no factor brings to a size "
+            "that can be computed with.",
+            "Name the unit of the file (--units), or write it again from the program it is from.",
+        )
     low, high = scaled.min(axis=0), scaled.max(axis=0)
     shift = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     step = np.eye(4)
@@ -104,4 +112,5 @@ def _factor(
         return 1.0
     if extent <= 0:
         raise UsageError(f"The model is flat: it has no {what} that could become {target:g} mm.")
-    return float(target) / extent
+    with np.errstate(over="ignore"):
+        return float(np.float64(target) / np.float64(extent))

@@ -37,6 +37,7 @@ def check(
     overrides: Mapping[str, object] | None = None,
     placement: Placement = AS_IN_FILE,
     lean: float | str | Lean | None = None,
+    max_memory_mib: float | None = None,
     progress: Progress = SILENT,
 ) -> Checked:
     """Run the rules on a file, placed as ``hollow`` places it but otherwise as it came.
@@ -55,7 +56,7 @@ def check(
 
     settings = load_profile(profile, overrides or {})
     requested = lean_of(lean, settings.stability.lean_deg)
-    prepared = prepare(model, settings, placement, progress)
+    prepared = prepare(model, settings, placement, progress, max_memory_mib=max_memory_mib)
     solid, part = prepared.solid, prepared.solid.manifold
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)

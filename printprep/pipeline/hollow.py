@@ -47,15 +47,24 @@ def hollow_with(
     from printprep.check import run_rules, sorted_findings
     from printprep.pipeline.alternative_fill import alternative_fill
     from printprep.pipeline.prepare import prepare
+    from printprep.pipeline.soundness import check_sound
     from printprep.pipeline.voids import settle_voids
     from printprep.stand.lean import lean_of
 
     lean = lean_of(options.lean, profile.stability.lean_deg)
     check_options(profile, options)
     clock = Stopwatch(progress)
-    prepared = prepare(model, profile, placement, clock)
+    prepared = prepare(
+        model,
+        profile,
+        placement,
+        clock,
+        resolution=options.resolution,
+        max_memory_mib=options.max_memory_mib,
+    )
     prepared = settle_voids(prepared, options, clock)
     filled = fill_of(options.fill).run(prepared, options, lean, clock)
+    check_sound(filled.part, filled.drainage.drains if filled.drainage is not None else ())
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
@@ -89,6 +98,7 @@ def hollow(
     drain_diameter_mm: float | None = None,
     fill: str = "cavity",
     slicer: Path | None = None,
+    max_memory_mib: float | None = None,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the requested lean.
@@ -119,6 +129,8 @@ def hollow(
         sparse infill with dense ballast where weight is needed (filament only).
     slicer : the PrusaSlicer that weighs an infill print.  None uses the one installed; without one
         the print is estimated.
+    max_memory_mib : a model whose estimate exceeds this is refused; None takes what the machine
+        has free.
 
     Raises
     ------
@@ -138,6 +150,7 @@ def hollow(
         voids=voids,
         self_support=self_support,
         slicer=slicer,
+        max_memory_mib=max_memory_mib,
     )
     return hollow_with(model, settings, placement, options, progress)
 

@@ -55,6 +55,8 @@ class FillOptions:
     self_support : whether vaults carry ceilings; None: if ceilings sag in the profile's process.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
+    max_memory_mib : a model whose estimate exceeds this is refused; None: what the machine has
+        free.
     """
 
     fill: str = "cavity"
@@ -66,6 +68,7 @@ class FillOptions:
     voids: VoidPolicy = "fill"
     self_support: bool | None = None
     slicer: Path | None = None
+    max_memory_mib: float | None = None
 
 
 def drain_keys(count: int | None, diameter_mm: float | None) -> Mapping[str, object]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
+from printprep.pipeline.limits import check_memory, check_size
 from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import Progress
 from printprep.types import ModelVoids
@@ -36,8 +37,15 @@ def prepare(
     profile: Profile,
     placement: Placement,
     progress: Progress,
+    *,
+    resolution: int = 0,
+    max_memory_mib: float | None = None,
 ) -> Prepared:
     """Read a model (a mesh file, a voxel file or a mesh), place it, and make it into a solid.
+
+    resolution : of the grid that follows, 0 for none;  max_memory_mib : that the run may take, None
+    for what the machine has free.  A model that is too large or too small, or takes more memory, is
+    refused once it is read.
 
     Raises
     ------
@@ -47,6 +55,8 @@ def prepare(
 
     with progress.stage("read"):
         placed = placed_model(model, placement)
+    check_size(placed, profile, placement)
+    check_memory(placed, profile, resolution, max_memory_mib)
     with progress.stage("repair"):
         solid = repair(placed, profile.crumb_mm3)
         if placement.pose is not None:
