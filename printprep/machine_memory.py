@@ -14,9 +14,7 @@ _LIMITS = (
 
 def available_mib() -> float | None:
     """Memory that a process can take now, MiB; None where the system does not tell."""
-    known = [
-        value for value in (_free_mib(), _group_mib(), _process_mib()) if value is not None
-    ]
+    known = [value for value in (_free_mib(), _group_mib(), _process_mib()) if value is not None]
     return min(known, default=None)
 
 

@@ -30,7 +30,9 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
     from printprep.overhang.limits import acceptance
     from printprep.overhang.rule import unsupported_ceilings
 
-    ceilings = unsupported_ceilings(united((*context.cavities, *context.drained)), acceptance(profile))
+    ceilings = unsupported_ceilings(
+        united((*context.cavities, *context.drained)), acceptance(profile)
+    )
     worst = ceilings.worst
     if worst is None or (ceilings.area_mm2 <= AREA_MM2 and not ceilings.islands):
         return

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import area_normals, arrays, from_arrays, signed_volumes, together
+from printprep.mesh.measure import arrays, from_arrays, signed_volumes, together
 from printprep.mesh.weld import compact, connected, directed_edges
 
 if TYPE_CHECKING:
@@ -57,9 +57,8 @@ def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
     np.minimum.at(low, label, corners.min(axis=1))
     np.maximum.at(high, label, corners.max(axis=1))
     # About a point of its own, each shell keeps all the digits of its volume.
-    volume = np.bincount(
-        label, weights=signed_volumes(corners - low[label][:, None]), minlength=count
-    )
+    each = signed_volumes(corners - low[label][:, None])
+    volume: Float = np.bincount(label, weights=each, minlength=count).astype(np.float64)
     return ShellFigures(label, volume, low, high)
 
 
@@ -103,12 +102,4 @@ def joined(solids: Sequence[Manifold]) -> Manifold:
     if len(solids) == 1:
         return solids[0]
     return together(solids) if solids else Manifold()
-
-
-def mean_thickness_mm(vertices: Float, faces: Int, figures: ShellFigures) -> Float:
-    """(k,) mm, twice the volume of each shell over its area; vertices (n, 3) mm, faces (m, 3)."""
-    area = np.linalg.norm(area_normals(vertices[faces]), axis=1) / 2
-    total = np.bincount(figures.label, weights=area, minlength=len(figures.volume_mm3))
-    result: Float = 2 * np.abs(figures.volume_mm3) / np.maximum(total, np.finfo(np.float64).tiny)
-    return result
 

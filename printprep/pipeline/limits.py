@@ -83,7 +83,9 @@ def estimated_mib(
         margin = 2 * margin_mm(longest, profile)
         pitch = longest / resolution
         x, y, z = extents_mm
-        bytes_ += VOXEL_BYTES * ((x + margin) / pitch + 1) * ((y + margin) / pitch + 1) * (z / pitch)
+        bytes_ += (
+            VOXEL_BYTES * ((x + margin) / pitch + 1) * ((y + margin) / pitch + 1) * (z / pitch)
+        )
         cell = max(profile.wall_mm / FINE_CELLS_PER_WALL, longest / MOST_FINE_CELLS)
         # The cells are a whole part of a voxel: up to half as small again.
         bytes_ += FINE_BYTES * math.prod(1.5 * side / cell + 1 for side in extents_mm)

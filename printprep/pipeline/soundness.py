@@ -78,9 +78,7 @@ def _check_surface(part: Part, drains: tuple[Drain, ...]) -> None:
     points = _some(outside[0])
     _refuse_far(part, points, distance_to_mesh_mm(points, *written), drains, "does not reach")
     points = _some(written[0])
-    off = np.minimum(
-        distance_to_mesh_mm(points, *outside), distance_to_mesh_mm(points, *cavity)
-    )
+    off = np.minimum(distance_to_mesh_mm(points, *outside), distance_to_mesh_mm(points, *cavity))
     _refuse_far(part, points, off, drains, "leaves")
 
 
@@ -115,4 +113,3 @@ def _beside_drains(points: Float, drains: tuple[Drain, ...]) -> Bool:
 def _some(vertices: Float) -> Float:
     """(k, 3) some of vertices (n, 3), always the same ones."""
     return vertices[:: max(1, len(vertices) // MOST_POINTS)]
-

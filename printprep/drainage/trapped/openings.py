@@ -48,7 +48,8 @@ def chambers(part: Manifold, diameter_mm: float) -> tuple[Chamber, ...]:
     if space.empty.all():  # thinner than a cell everywhere
         return ()
     radius = PASSES * diameter_mm / 2
-    fits = space.ball_fits(radius)
+    # To half a cell is enough for a ball half as wide as a hole.
+    fits = space.clearance_mm >= radius
     inside = enclosed_cells(space, fits, radius)
     if not inside.any():
         return ()
