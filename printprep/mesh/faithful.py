@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Bool, Float, Int
 
+FOLDS = "it folds over"
 # Mean thickness of what a simplification may add or take over the whole surface.
 _SKIN_MM = 1e-4
 
@@ -40,7 +41,7 @@ def unfaithful(before: Manifold, after: Manifold, moved_mm: float) -> str | None
         if distance > moved_mm:
             return f"it moves by {distance:.3g} mm"
     if changed_new.any() and folded(*new) and not folded(*old):
-        return "it folds over"
+        return FOLDS
     return None
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.mesh.faithful import unfaithful
+from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
 from printprep.mesh.weld import directed_edges, drop_collapsed
 
@@ -48,7 +48,7 @@ def quantized(manifold: Manifold) -> Manifold:
     if not len(crowded_edges(faces)):
         return _without_flat_shells(_rebuilt(vertices, faces))
     reason = "it still touches itself"
-    apart = manifold
+    apart, folds = manifold, None
     for tolerance_mm in _MERGED_MM:
         # Welding the ends of an edge shorter than a float32 step folds triangles over.
         apart = _moved_apart(apart.simplify(tolerance_mm) if tolerance_mm else apart)
@@ -59,8 +59,12 @@ def quantized(manifold: Manifold) -> Manifold:
         fault = unfaithful(manifold, found, _MOVED_MM)
         if fault is None:
             return _without_flat_shells(found)
+        if fault == FOLDS and folds is None:
+            folds = found
         # What moved too far is no ground to go on from.
         reason, apart = fault, manifold
+    if folds is not None:  # nothing else moved: the folds are narrower than the move
+        return _without_flat_shells(folds)
     raise GeometryError(
         f"The part touches itself along an edge and cannot be moved apart there ({reason}).",
         _NUDGE,

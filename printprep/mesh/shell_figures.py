@@ -62,6 +62,20 @@ def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
     return ShellFigures(label, volume, low, high)
 
 
+def closed_shells(faces: Int, figures: ShellFigures) -> Bool:
+    """(k,) which shells of faces (m, 3) are closed: along each edge as many faces run each way."""
+    edges = directed_edges(faces)
+    size = int(faces.max(initial=0)) + 1
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    _, index = np.unique(low * size + high, return_inverse=True)
+    index = np.ravel(index)
+    balance = np.bincount(index, weights=np.where(edges[:, 0] < edges[:, 1], 1.0, -1.0))
+    open_edge = balance[index] != 0
+    closed = np.ones(len(figures.volume_mm3), dtype=bool)
+    closed[np.repeat(figures.label, 3)[open_edge]] = False
+    return closed
+
+
 def without_crumbs(manifold: Manifold, least_mm3: float) -> tuple[Manifold, int]:
     """The manifold without its crumbs, and how many they were; bodies and voids alike.
 
