@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from printprep.cavity.carve import finished
 from printprep.drainage.channel import bored
 from printprep.drainage.drain_cavities import Drained, drain_cavities
 from printprep.drainage.driller import Hole
 from printprep.drainage.voxelized_part import voxelize
-from printprep.cavity.carve import finished
 from printprep.types import Drain, Drainage
 
 if TYPE_CHECKING:

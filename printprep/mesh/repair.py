@@ -50,7 +50,7 @@ def repair(model: Model, crumb_mm3: float = DUST_MM3) -> Solid:
         that agrees with it.
     """
     _refuse_flat(model)
-    model, crumbs = _without_crumbs(model, crumb_mm3)
+    model, crumbs = without_crumb_shells(model, crumb_mm3)
     faces, turned = right_side_out(model.vertices, model.faces)
     reference = Reference.of(model.vertices, faces)
     _refuse_empty(model, reference)
@@ -89,7 +89,7 @@ def _fault(offer: Candidate, reference: Reference) -> str | None:
     return reference.disagreement(offer.manifold, offer.slack_mm3)
 
 
-def _without_crumbs(model: Model, crumb_mm3: float) -> tuple[Model, tuple[str, ...]]:
+def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[str, ...]]:
     """The model without closed shells that are too small to print, and a sentence on them.
 
     Raises GeometryError where nothing else is left, or more shells than can be sorted.

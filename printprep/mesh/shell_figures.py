@@ -116,4 +116,3 @@ def joined(solids: Sequence[Manifold]) -> Manifold:
     if len(solids) == 1:
         return solids[0]
     return together(solids) if solids else Manifold()
-

@@ -51,17 +51,28 @@ def prepare(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.mesh.repair import repair
+    from printprep.mesh.repair import repair, without_crumb_shells
 
     with progress.stage("read"):
         placed = placed_model(model, placement)
     check_size(placed, profile, placement)
     check_memory(placed, profile, resolution, max_memory_mib)
     with progress.stage("repair"):
-        solid = repair(placed, profile.crumb_mm3)
+        placed, crumbs = without_crumb_shells(placed, profile.crumb_mm3)
+        solid = _also(repair(placed, profile.crumb_mm3), crumbs)
         if placement.pose is not None:
             placed, solid = _posed(placed, solid, placement.pose)
     return Prepared(placed, solid, profile)
+
+
+def _also(solid: Solid, before: tuple[str, ...]) -> Solid:
+    """The solid, with what was done before its repair."""
+    if not before:
+        return solid
+    rung = "union" if solid.repair.rung == "as-is" else solid.repair.rung
+    return replace(
+        solid, repair=replace(solid.repair, rung=rung, actions=(*before, *solid.repair.actions))
+    )
 
 
 def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_IN_FILE) -> Model:

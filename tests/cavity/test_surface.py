@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 
 from printprep.cavity.carve import cavities_of, cut, make_part
-from printprep.cavity.ties import tied
 from printprep.cavity.surface import cavity_surface
+from printprep.cavity.ties import tied
 from printprep.grid.depth import measure_depths
 from printprep.mesh.measure import arrays, distance_mm
 from printprep.types import Plane

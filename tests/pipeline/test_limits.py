@@ -81,7 +81,11 @@ def test_both_sides_of_the_size_limits() -> None:
 
 @pytest.mark.parametrize(
     ("triangles", "size", "resolution", "measured"),
-    [(6000, (60, 80, 100), 64, 506), (6000, (60, 80, 100), 128, 710), (423_000, (80, 80, 80), 64, 950)],
+    [
+        (6000, (60, 80, 100), 64, 506),
+        (6000, (60, 80, 100), 128, 710),
+        (423_000, (80, 80, 80), 64, 950),
+    ],
 )
 def test_the_estimate_of_memory_holds_and_is_not_idle(
     triangles: int, size: tuple[float, float, float], resolution: int, measured: float

@@ -25,7 +25,5 @@ def test_what_failed_once_keeps_the_promises(file: Path) -> None:
 
 def test_a_recipe_survives_its_file() -> None:
     step = Step("add", "box", (20.0, 20.0, 20.0), (0.0, 30.0, 0.0), (0.0, 0.0, 5.0))
-    recipe = Recipe(
-        (step,), (0.0, 0.0, 0.0), 20.0, "fdm-pla-0.4", "fill", "auto", 16, 10.0
-    )
+    recipe = Recipe((step,), (0.0, 0.0, 0.0), 20.0, "fdm-pla-0.4", "fill", "auto", 16, 10.0)
     assert Recipe.of_json(recipe.to_json()) == recipe

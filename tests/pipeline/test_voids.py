@@ -101,9 +101,9 @@ def test_voids_that_are_kept_get_vaults_and_walls() -> None:
 def test_voids_that_are_kept_are_drained(profile: str) -> None:
     result = hollowed(holding(), profile, voids="keep")
     assert len(bodies_of(result)) == 1
-    assert "sealed-cavity" not in said(result)
-    assert result.drainage is not None
-    assert {drain.cavity for drain in result.drainage.drains} == set(range(len(result.part.cavities)))
+    # One hole may open both, on its way through the cavity around the void.
+    assert not {"sealed-cavity", "drain-too-small"} & said(result).keys()
+    assert result.drainage is not None and len(result.drainage.drains) >= 2
     assert len(result.part.cavities) == 2
 
 
