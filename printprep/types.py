@@ -88,6 +88,9 @@ class ModelVoids:
     holding_mm3: tuple[float, ...] = ()
 
 
+NO_VOIDS = ModelVoids()
+
+
 @dataclass(frozen=True)
 class MassProperties:
     """Integrals over a closed mesh at unit density.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from printprep.check.walls import Enclosed, Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Advice, Drainage, Lean, Model, ModelVoids, Repair, Stability
+from printprep.types import NO_VOIDS, Advice, Drainage, Lean, Model, ModelVoids, Repair, Stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,7 +57,7 @@ class CheckContext:
     advice: Advice | None = None
     drainage: Drainage | None = None
     raw: Model | None = None
-    voids: ModelVoids = ModelVoids()
+    voids: ModelVoids = NO_VOIDS
     drained: tuple[Manifold, ...] = ()
     walls: tuple[Enclosed, ...] = ()
 

@@ -100,8 +100,8 @@ def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[s
     count = len(crumbs) - int(crumbs.sum())
     if not count:
         raise GeometryError(
-            f"{model.name} consists of {len(crumbs)} bodies, each of less than {crumb_mm3:.3g} mm³: "
-            "none of them prints.",
+            f"{model.name} consists of {len(crumbs)} bodies, each of less than {crumb_mm3:.3g} "
+            "mm³: none of them prints.",
             "Unite them in the program that made the model, or scale it up (--size).",
         )
     if count > MOST_SHELLS:

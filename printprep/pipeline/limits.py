@@ -123,7 +123,7 @@ def check_memory(
         else "Reduce its triangles in a modelling program, or allow more (--max-memory)."
     )
     raise InputError(
-        f"{model.name} ({len(model.faces)} triangles) would take about {needed:.0f} MiB of memory, more than the {limit:.0f} MiB "
-        f"that {whose}.",
+        f"{model.name} ({len(model.faces)} triangles) would take about {needed:.0f} MiB of memory, "
+        f"more than the {limit:.0f} MiB that {whose}.",
         hint,
     )

@@ -10,7 +10,7 @@ from printprep.errors import UsageError
 from printprep.pipeline.limits import check_memory, check_size
 from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import Progress
-from printprep.types import ModelVoids
+from printprep.types import NO_VOIDS, ModelVoids
 
 if TYPE_CHECKING:
     import trimesh
@@ -29,7 +29,7 @@ class Prepared:
     model: Model
     solid: Solid
     profile: Profile
-    voids: ModelVoids = ModelVoids()
+    voids: ModelVoids = NO_VOIDS
 
 
 def prepare(
