@@ -78,7 +78,7 @@ def _dents(pools: Pools, whole: Pools, depth_mm: Float) -> Int:
 
     pools : above cracks;  whole : with cracks;  depth_mm : (n,) mm, inf where nothing runs out.
 
-    A crack is a sheet of many dexels, of which drops join no two: it is one dent, by its own height.
+    A crack is a sheet of many dexels, of which drops join no two: it is one dent by itself.
     """
     lost = np.isinf(depth_mm)
     label = pools.connected((depth_mm > LEAST_MM) & ~lost)
