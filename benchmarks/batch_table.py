@@ -158,7 +158,7 @@ def items_for(table: Path, work: Path, count: int, resolution: int) -> list[Item
     for number, content in enumerate(BAD):
         (bad / f"bad{number}.stl").write_bytes(content)
     folder = work / "alone"
-    options = FillOptions(resolution=resolution, self_support=False)
+    options = FillOptions(resolution=resolution, vaults="none")
     variants = itertools.product((30.0, 40.0, 50.0), ("5", "10"), catalogue(table, group="dev"))
     items = []
     for size, lean, model in itertools.islice(variants, count - len(BAD)):

@@ -116,7 +116,7 @@ def infill_figures(model: Path, profile: Profile, options: dict[str, Any]) -> Ro
 def hollow_figures(model: Path, profile: Profile, options: dict[str, Any]) -> Row:
     """With a cavity whose ceilings stand on vaults."""
     with tempfile.TemporaryDirectory() as folder:
-        made = hollow(model, profile=profile, self_support=True, **options)
+        made = hollow(model, profile=profile, vaults="printer", **options)
         part, gcode = Path(folder) / "hollow.3mf", Path(folder) / "hollow.gcode"
         made.write(part)
         find_slicer().slice(part, gcode, profile_settings(profile))

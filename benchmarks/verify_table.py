@@ -19,6 +19,7 @@ from rows import Row, markdown_lines, measured_rows, table_parser
 from printprep import hollow
 from printprep.gcode.printed import Printed
 from printprep.gcode.stability import tilt_as_printed
+from printprep.types import VaultChoice
 from printprep.verify.part_3mf import ComputedPart
 from printprep.verify.rules import centre_limit_mm, centre_offset_mm, contact_offset_mm
 from printprep.verify.run import verify
@@ -63,7 +64,8 @@ def measure(model: Path, up: str, size_mm: float, profile: str, *, bare: bool = 
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         part = Path(folder) / "part.3mf"
-        made = hollow(model, up=up, size_mm=size_mm, profile=profile, self_support=not bare)
+        vaults: VaultChoice = "none" if bare else "printer"
+        made = hollow(model, up=up, size_mm=size_mm, profile=profile, vaults=vaults)
         made.write(part)
         found = verify(part)
     return {

@@ -50,6 +50,9 @@ class _Frozen(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, validate_default=True)
 
 
+# A third of a line rests on the line below.
+OVERHANG_SHARE = 0.667
+
 _BedSide = Annotated[float, _bounded(10, 5000)]
 
 
@@ -70,6 +73,15 @@ class Material(_Frozen):
 
     name: str = Field(min_length=1, max_length=80, strict=True)
     density_g_cm3: float = _bounded(0.1, 25.0)
+
+
+class OverhangSettings(_Frozen):
+    """What the printer lays without support where nobody sees it: inside cavities.
+
+    share : how far a line may stand out over the one below, as a share of its width.
+    """
+
+    share: float = _bounded(0.1, 0.9, default=OVERHANG_SHARE)
 
 
 class DrainSettings(_Frozen):
@@ -127,6 +139,7 @@ class Profile(_Frozen):
     min_gap_mm: float | None = _bounded(0.01, 50.0, default=None)
     overhang_deg: float = _bounded(0.0, 90.0)
     column_slenderness: float | None = _bounded(2.0, 100.0, default=None)
+    overhang: OverhangSettings | None = None
     printer: Printer
     material: Material
     drain: DrainSettings = DrainSettings()
@@ -157,7 +170,7 @@ class Profile(_Frozen):
                     raise _impossible(f"printer.{key}", f"has no meaning for {self.process}")
             if self.slicer.check_with is not None:
                 raise _impossible("slicer.check_with", f"has no slicer for {self.process}")
-            for key in ("infill", "column_slenderness"):
+            for key in ("infill", "column_slenderness", "overhang"):
                 if getattr(self, key) is not None:
                     raise _impossible(key, f"has no meaning for {self.process}")
         if drain.count and drain.diameter_mm is None:
@@ -176,6 +189,11 @@ class Profile(_Frozen):
         It is the least feature in one layer: a dot of min_feature_mm.
         """
         return self.min_feature_mm**2 * self.printer.layer_height_mm
+
+    @property
+    def overhang_share(self) -> float:
+        """How far a line may stand out over the one below in a cavity, as a share of its width."""
+        return OVERHANG_SHARE if self.overhang is None else self.overhang.share
 
     @property
     def object_settings(self) -> Mapping[str, str]:

@@ -56,6 +56,7 @@ class HollowResult:
     model : as placed;  solid : repaired;  part : what is printed.
     stability_solid, stability : how solid and part stand.
     lean : the lean at which the part should stand.
+    blocker : where the file tells a slicer to make no supports, None if nowhere.
     wall_min_mm : thinnest wall between a cavity and the outside, None without a cavity.
     seconds : duration of each stage; no file contains it.
     """
@@ -74,6 +75,7 @@ class HollowResult:
     findings: tuple[Finding, ...]
     advice: Advice | None = None
     supports: Supports | None = None
+    blocker: Manifold | None = None
     drainage: Drainage | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     simulation: Simulation | None = None
@@ -127,18 +129,27 @@ class HollowResult:
         """Everything that a file of the part is made from."""
         from printprep.output.part_file import Contents
 
-        return Contents(self.part, self.profile, self.infill, self.figures())
+        return Contents(self.part, self.profile, self.infill, self.figures(), self.blocker)
 
-    def write(self, path: str | Path, slicer: SlicerName = "prusa") -> None:
+    def write(
+        self, path: str | Path, slicer: SlicerName = "prusa", *, without_blocker: bool = False
+    ) -> None:
         """Write the part; the suffix chooses the format (.3mf carries PrusaSlicer's settings).
+
+        without_blocker : also write vaults for the printer into a file that cannot carry the
+            support blocker; such a part must be sliced without supports.
 
         Raises
         ------
-        UsageError : a suffix other than .3mf, .stl, .obj, .ply.
+        UsageError : a suffix other than .3mf, .stl, .obj, .ply; or a file that cannot carry the
+            support blocker that the vaults count on.
         OutputError : the file cannot be written; an existing file is then unchanged.
         """
+        from printprep.output.limits import check_blocker
         from printprep.output.part_file import write_part
 
+        if not without_blocker and self.supports is not None:
+            check_blocker(self.supports.rule, Path(path).suffix, slicer)
         write_part(self.contents(), path, slicer)
 
 
@@ -250,6 +261,7 @@ def _vaults(result: HollowResult) -> Vaults | None:
     if supports is None:
         return None
     return Vaults(
+        rule=supports.rule,
         capitals=supports.capitals,
         columns=supports.columns,
         added_mm3=rounded(supports.added_mm3),

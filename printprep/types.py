@@ -7,7 +7,7 @@ degrees, densities g/cm³.  Classes with an array or a mesh compare by identity 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 Severity = Literal["info", "warning", "error"]
 Unit = Literal["mm", "mm2", "mm3", "deg", "g", "percent"]  # of a finding's value and limit
 SlicerName = Literal["prusa", "orca", "cura", "generic"]  # whose settings a file is written for
+VaultRule = Literal["printer", "slicer"]  # whose overhang rule the vaults are built for
+VaultChoice = Literal["printer", "slicer", "none"]
+VAULT_CHOICES: tuple[VaultChoice, ...] = get_args(VaultChoice)
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
@@ -314,10 +317,12 @@ class Simulation:
 class Supports:
     """The vaults that carry the ceilings from inside, in the whole hollowable volume.
 
+    rule : the overhang rule that they are built for.
     added_mm3 : their volume; where ballast fills it too, nothing is counted twice.
-    unsupported_mm2, islands : what the slicer's rule for supports still finds.
+    unsupported_mm2, islands : what that rule still finds.
     """
 
+    rule: VaultRule
     capitals: int
     columns: int
     added_mm3: float

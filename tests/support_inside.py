@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,11 @@ from numpy.typing import NDArray
 
 from printprep.mesh.measure import arrays, winding
 from printprep.mesh.quantize import quantized
-from printprep.mesh.write import to_bytes
+from printprep.output.item import solid_item
 from printprep.profiles import Profile
-from printprep.slicer.process import find_slicer
+from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import FILAMENT_DIAMETER_MM, profile_settings
+from printprep.threemf.write import write_3mf
 
 Float = NDArray[np.float64]
 
@@ -30,8 +32,24 @@ def support_inside_g(
 
     threshold_deg : support_material_threshold; 0 is the automatic one.
     """
-    x, y, _ = profile.printer.bed_mm
-    part = quantized(outside - cavity).translate((x / 2, y / 2, 0))
+    return supports_g(find_slicer(), outside - cavity, cavity, profile, threshold_deg)[0]
+
+
+def supports_g(
+    slicer: Slicer,
+    part: Manifold,
+    cavity: Manifold,
+    profile: Profile,
+    threshold_deg: float,
+    *,
+    style: str = "grid",
+    blocker: Manifold | None = None,
+) -> tuple[float, float]:
+    """Grams of support material inside a cavity of a part, and everywhere else.
+
+    threshold_deg : support_material_threshold; 0 is the automatic one.
+    style : support_material_style;  blocker : a support blocker in the file.
+    """
     settings = {
         **profile_settings(profile),
         # Hollow, without solid layers: quicker, and supports do not depend on it (a cow's cavity at
@@ -43,17 +61,22 @@ def support_inside_g(
         "support_material": "1",
         "support_material_auto": "1",
         "support_material_threshold": f"{threshold_deg:g}",
+        "support_material_style": style,
         "support_material_buildplate_only": "0",
     }
+    item = solid_item(quantized(part), "part", profile, blocker=blocker)
     with tempfile.TemporaryDirectory() as folder:
-        model, gcode = Path(folder) / "part.stl", Path(folder) / "part.gcode"
-        model.write_bytes(to_bytes(part, ".stl"))
-        find_slicer().slice(model, gcode, settings)
+        model, gcode = Path(folder) / "part.3mf", Path(folder) / "part.gcode"
+        # Settings of an object would override these.
+        model.write_bytes(write_3mf([replace(item, settings={})]))
+        slicer.slice(model, gcode, settings)
         middles, filament_mm = support_moves(gcode)
-    middles = middles - [x / 2, y / 2, profile.printer.layer_height_mm / 2]
+    x, y, z = item.translation_mm
+    middles = middles - [x, y, z + profile.printer.layer_height_mm / 2]
     inside = winding(middles, *arrays(cavity)) > 0.5
     area = math.pi / 4 * FILAMENT_DIAMETER_MM**2
-    return float(filament_mm[inside].sum() * area * profile.material.density_g_cm3 / 1000)
+    grams = filament_mm * area * profile.material.density_g_cm3 / 1000
+    return float(grams[inside].sum()), float(grams[~inside].sum())
 
 
 def support_moves(gcode: Path) -> tuple[Float, Float]:

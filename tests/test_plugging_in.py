@@ -75,9 +75,9 @@ def test_an_objective_plugs_in(monkeypatch, tower):
 
     row = Objective("shell", "the shell alone", False, empty, empty_voxels)
     monkeypatch.setitem(OBJECTIVES, "shell", row)
-    shell = printprep.hollow(tower, objective="shell", resolution=16, self_support=False)
+    shell = printprep.hollow(tower, objective="shell", resolution=16, vaults="none")
     assert shell.density.certificate is None  # another objective proves nothing about the lean
-    assert shell.mass_g <= printprep.hollow(tower, resolution=16, self_support=False).mass_g
+    assert shell.mass_g <= printprep.hollow(tower, resolution=16, vaults="none").mass_g
     block = np.zeros((64, 64, 64), dtype=bool)
     block[20:40, 20:40, 20:40] = True
     hollowed = printprep.generators.hollow(block, objective="shell")
@@ -133,7 +133,7 @@ def test_a_density_without_a_plane_is_cut_where_it_is_below_one_half(monkeypatch
 
     row = Objective("upper", "the lower half solid", False, upper_half, None)
     monkeypatch.setitem(OBJECTIVES, "upper", row)
-    part = printprep.hollow(tower, objective="upper", resolution=16, self_support=False).part
+    part = printprep.hollow(tower, objective="upper", resolution=16, vaults="none").part
     (cavity,) = part.cavities
     assert isinstance(cavity, Manifold)
     assert cavity.bounding_box()[2] == pytest.approx(20.0, abs=3.0)

@@ -22,7 +22,7 @@ def hollow_block(buildplate_only: str = "1") -> HollowResult:
         block,
         resolution=32,
         base="never",
-        self_support=False,  # one plain room: quick to slice and to search
+        vaults="none",  # one plain room: quick to slice and to search
         overrides={"slicer.object_settings.support_material_buildplate_only": buildplate_only},
     )
 

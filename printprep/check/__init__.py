@@ -26,6 +26,7 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     sealed_cavity,
     self_intersection,
     suction_cup,
+    support_blocker,
     tilt,
     tiny_model,
     trapped_volume,

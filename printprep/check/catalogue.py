@@ -52,6 +52,7 @@ _KINDS = (
     Kind("wall-thickness", "mm", ("info", "warning", "error"), "a wall with holes, or that breaks"),
     # ceilings and overhangs
     Kind("overhang-area", "mm2", _INFO, "unexpected supports"),
+    Kind("support-blocker", "mm2", _WARNING, "supports inside, or missing outside"),
     Kind("unsupported-ceiling", "mm2", _WARNING, "a ceiling that sags into the cavity"),
     # what stays inside
     Kind("drain-filled", "mm3", _INFO, "a cavity left solid for no visible reason"),
@@ -84,9 +85,11 @@ _KINDS = (
     Kind("support-in-cavity", "mm3", _ERROR, "supports that no one can remove"),
     # what the user of a file must know
     Kind("infill-estimated", None, _WARNING, "an estimate taken for a measurement"),
+    Kind("no-blocker", None, _WARNING, "supports that no one can remove"),
     Kind("no-plugs", None, _INFO, "a search for a file that was not written"),
     Kind("no-settings", None, _WARNING, "a print with settings that were not computed for"),
     Kind("set-by-hand", None, _INFO, "a print with settings that were not computed for"),
+    Kind("vaults-for-slicer", None, _INFO, "a heavier part for no visible reason"),
 )
 
 CATALOGUE: Mapping[str, Kind] = MappingProxyType({kind.id: kind for kind in _KINDS})

@@ -36,6 +36,7 @@ class CheckContext:
     reachable_deg : the largest lean any filling reaches, None where the requested lean is feasible.
     advice : what would make the lean feasible; it comes with ``reachable_deg``.
     drainage : how the part drains, None where no drains were requested.
+    blocker : where the file forbids a slicer's supports, None if it does not.
     raw : the triangles of the file, as read and placed or as they will be written.
     voids : what became of the voids that the model brought.
     drained : cavities that printprep made and that drain holes open.
@@ -56,6 +57,7 @@ class CheckContext:
     reachable_deg: float | None = None
     advice: Advice | None = None
     drainage: Drainage | None = None
+    blocker: Manifold | None = None
     raw: Model | None = None
     voids: ModelVoids = NO_VOIDS
     drained: tuple[Manifold, ...] = ()

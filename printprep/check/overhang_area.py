@@ -12,6 +12,7 @@ from printprep.check.catalogue import finding
 from printprep.check.points import mean_point
 from printprep.check.registry import rule
 from printprep.mesh.measure import area_normals, arrays
+from printprep.overhang.limits import THRESHOLD_DEG
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -28,16 +29,20 @@ _SLACK_DEG = 0.01
 def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Tells how much surface needs supports, outside and in open cavities.
 
-    It counts surface above the first layer that leans outward by more than the profile's overhang.
+    It counts surface above the first layer that leans outward by more than the profile's overhang,
+    with filament by more than a slicer leaves without supports.
     Powder carries every overhang; ceilings of sealed cavities have their own rule.
     """
-    if profile.overhang_deg >= 90:
+    limit_deg = profile.overhang_deg
+    if profile.traits.has_nozzle:
+        limit_deg = min(limit_deg, THRESHOLD_DEG)
+    if limit_deg >= 90:
         return
     vertices, faces = arrays(context.outside)
     corners = vertices[faces]
     normals = area_normals(corners)
     doubled = np.linalg.norm(normals, axis=1)
-    steep = math.sin(math.radians(profile.overhang_deg + _SLACK_DEG))
+    steep = math.sin(math.radians(limit_deg + _SLACK_DEG))
     hangs = -normals[:, 2] > steep * doubled
     hangs &= corners[:, :, 2].max(axis=1) > profile.printer.first_layer_mm
     area = float(doubled[hangs].sum()) / 2
@@ -46,7 +51,7 @@ def overhang_area(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     largest = int(np.argmax(np.where(hangs, doubled, 0)))
     yield finding(
         "overhang-area",
-        f"{area:.0f} mm² of the surface overhang by more than {profile.overhang_deg:g}°: a slicer "
+        f"{area:.0f} mm² of the surface overhang by more than {limit_deg:g}°: a slicer "
         "adds supports there.",
         "Try another axis up (--up), or another pose (`printprep hollow --pose`).",
         value=area,

@@ -18,8 +18,8 @@ from printprep.cli.options import (
     placement_options,
     profile_option,
     resolution_option,
-    self_support_option,
     set_option,
+    vaults_option,
 )
 from printprep.pipeline.options import FillOptions
 
@@ -38,7 +38,7 @@ Examples:
 @placement_options
 @resolution_option
 @base_option
-@self_support_option
+@vaults_option
 @click.option(
     "--points",
     "count",
@@ -61,7 +61,7 @@ def command(
     settings: tuple[str, ...],
     resolution: int,
     base: Any,
-    self_support: bool | None,
+    vaults: Any,
     count: int,
     chart: Path | None,
     as_json: bool,
@@ -86,7 +86,7 @@ def command(
         profile=profile,
         overrides=overrides(settings),
         placement=placement_of(placement),
-        options=FillOptions(resolution=resolution, base=base, self_support=self_support),
+        options=FillOptions(resolution=resolution, base=base, vaults=vaults),
         count=count,
         progress=for_terminal(quiet=quiet),
     )

@@ -10,6 +10,7 @@ import click
 
 from printprep.errors import UsageError
 from printprep.pipeline.options import Placement
+from printprep.types import VAULT_CHOICES
 
 if TYPE_CHECKING:
     from printprep.types import Finding, Severity
@@ -116,13 +117,23 @@ def voids_option(command: Command) -> Command:
     )(command)
 
 
-def self_support_option(command: Command) -> Command:
-    """Whether vaults carry the ceilings of cavities."""
-    return click.option(
-        "--self-support/--no-self-support",
-        default=None,
-        help="Build vaults inside the cavities that carry their ceilings, so that they print "
-        "without supports. Default: on for filament, off for resin and powder.",
+def vaults_option(command: Command) -> Command:
+    """Which vaults carry the ceilings of cavities."""
+    return together(
+        click.option(
+            "--vaults",
+            type=click.Choice(VAULT_CHOICES),
+            help="Vaults that carry the ceilings of cavities from inside. printer: as steep as the "
+            "printer lays them; the 3MF tells PrusaSlicer to keep its supports out. slicer: so "
+            "steep that no slicer puts supports there. none: no vaults. Default: printer for "
+            "filament, slicer if the file cannot keep supports out, none for resin and powder.",
+        ),
+        click.option(
+            "--no-self-support",
+            "vaults",
+            flag_value="none",
+            help="The same as --vaults none.",
+        ),
     )(command)
 
 

@@ -17,10 +17,10 @@ from printprep.cli.options import (
     placement_options,
     profile_options,
     resolution_option,
-    self_support_option,
     severity_of,
     slicer_option,
     together,
+    vaults_option,
     voids_option,
 )
 from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
@@ -97,7 +97,7 @@ def part_options(command: Command) -> Command:
             help="Also slice the part with PrusaSlicer and measure the G-code, like "
             "`printprep verify`.",
         ),
-        self_support_option,
+        vaults_option,
         click.option(
             "--drains",
             "drain_count",
@@ -157,7 +157,7 @@ def job_of(
             solver=Solver(given["solver_name"], given["device"]),
             base=given["base"],
             voids=given["voids"],
-            self_support=given["self_support"],
+            vaults=given["vaults"],
             slicer=given["slicer"],
             max_memory_mib=given["max_memory_mib"],
         ),

@@ -236,7 +236,8 @@ def _write_part(result: HollowResult, at: tuple[float, float], target: Path) -> 
 
     x0, y0, _, x1, y1, _ = result.solid.manifold.bounding_box()
     at_mm = (float(at[0] - (x0 + x1) / 2), float(at[1] - (y0 + y1) / 2))
-    item = solid_item(quantized(result.part.manifold), result.part.name, result.profile, at_mm)
+    part = quantized(result.part.manifold)
+    item = solid_item(part, result.part.name, result.profile, at_mm, blocker=result.blocker)
     figures = {JSON_PART: to_text(result.figures().to_json()).encode("ascii")}
     target.write_bytes(write_3mf([item], attachments=figures))
     return computed_part(target)

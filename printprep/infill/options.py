@@ -9,9 +9,10 @@ from printprep.objectives import DEFAULT_OBJECTIVE
 
 if TYPE_CHECKING:
     from printprep.profiles import Profile
+    from printprep.types import VaultChoice
 
 
-def check_infill(profile: Profile, *, objective: str, self_support: bool) -> None:
+def check_infill(profile: Profile, *, objective: str, vaults: VaultChoice | None) -> None:
     """Raise UsageError if an option is for cavities only, or if the profile has no infill."""
     if not profile.traits.has_nozzle:
         raise UsageError(
@@ -29,10 +30,10 @@ def check_infill(profile: Profile, *, objective: str, self_support: bool) -> Non
             f"The objective {objective} makes only cavities, not infill.",
             "Leave out --objective, or use --fill cavity.",
         )
-    if self_support:
+    if vaults in ("printer", "slicer"):
         raise UsageError(
-            "--self-support has no effect with infill: the infill carries the ceilings.",
-            "Leave out --self-support, or use --fill cavity.",
+            f"--vaults {vaults} has no effect with infill: the infill carries the ceilings.",
+            "Leave out --vaults, or use --fill cavity.",
         )
     if profile.drain.count:
         raise UsageError(

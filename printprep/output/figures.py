@@ -16,7 +16,15 @@ from typing import Annotated, Any
 from pydantic import Field, TypeAdapter, ValidationError
 
 from printprep.output.numbers import plain
-from printprep.types import Advice, AlternativeFill, Certificate, Drain, Finding, Repair
+from printprep.types import (
+    Advice,
+    AlternativeFill,
+    Certificate,
+    Drain,
+    Finding,
+    Repair,
+    VaultRule,
+)
 
 FORMAT = 1
 """Version of the keys.  It grows when a key changes its meaning; a reader refuses another one."""
@@ -51,7 +59,10 @@ class Cavities:
 
 @dataclass(frozen=True)
 class Vaults:
-    """The vaults that carry the ceilings, in the whole hollowable volume."""
+    """The vaults that carry the ceilings, in the whole hollowable volume.
+
+    rule : whose overhang rule they keep, the printer's or the slicer's.
+    """
 
     capitals: int
     columns: int
@@ -59,6 +70,7 @@ class Vaults:
     added_g: float
     unsupported_mm2: float
     islands: int
+    rule: VaultRule = "slicer"  # what files without this key were built for
 
 
 @dataclass(frozen=True)

@@ -16,17 +16,27 @@ if TYPE_CHECKING:
 
 
 def solid_item(
-    part: Manifold, name: str, profile: Profile, at_mm: tuple[float, float] | None = None
+    part: Manifold,
+    name: str,
+    profile: Profile,
+    at_mm: tuple[float, float] | None = None,
+    *,
+    blocker: Manifold | None = None,
 ) -> Item:
     """A part that prints exactly as its mesh, cavities as inverted shells.
 
     part : quantized;  at_mm : place (x, y) of its origin, None for the middle of the bed.
+    blocker : where the slicer makes no supports.
     """
     vertices, faces = quantized_arrays(part)
+    volumes = [Volume(name, vertices, faces)]
+    if blocker is not None and not blocker.is_empty():
+        arrays = quantized_arrays(quantized(blocker))
+        volumes.append(Volume("support blocker", *arrays, "SupportBlocker"))
     x, y = middle_of_bed(profile) if at_mm is None else at_mm
     return Item(
         name=name,
-        volumes=[Volume(name, vertices, faces)],
+        volumes=volumes,
         settings=profile.object_settings,
         translation_mm=(x, y, 0.0 - float(vertices[:, 2].min())),
     )

@@ -12,7 +12,7 @@ from printprep.files import refuse_impossible_target
 
 if TYPE_CHECKING:
     from printprep.profiles import Profile
-    from printprep.types import Finding, SlicerName
+    from printprep.types import Finding, SlicerName, VaultRule
 
 SUFFIXES = (".3mf", ".stl", ".obj", ".ply")
 
@@ -54,6 +54,60 @@ def check_infill_output(suffix: str, slicer: SlicerName = "prusa") -> None:
             f"Infill and ballast can be written only for PrusaSlicer, not for {slicer}.",
             "Leave out --for, or use --fill cavity.",
         )
+
+
+def carries_blocker(suffix: str, slicer: SlicerName) -> bool:
+    """Whether a file tells its slicer where to make no supports."""
+    return suffix.lower() == ".3mf" and slicer == "prusa"
+
+
+def check_blocker(rule: VaultRule, suffix: str, slicer: SlicerName) -> None:
+    """Raise UsageError for vaults that count on a blocker in a file that cannot carry it."""
+    if rule == "printer" and not carries_blocker(suffix, slicer):
+        raise UsageError(
+            f"{_what(suffix, slicer)} carries no support blocker, and the vaults count on one: a "
+            "slicer with supports on would fill the cavities.",
+            "Hollow with vaults='slicer', or write a .3mf file for PrusaSlicer.",
+        )
+
+
+def _what(suffix: str, slicer: SlicerName) -> str:
+    return f"A {suffix} file" if slicer == "prusa" else f"A file for {slicer}"
+
+
+def vault_findings(
+    rule: VaultRule, suffix: str, slicer: SlicerName, *, chosen: bool
+) -> tuple[Finding, ...]:
+    """What a file that cannot carry a support blocker means for the vaults.
+
+    chosen : the rule was named, not the default.
+    """
+    if rule == "printer" and not carries_blocker(suffix, slicer):
+        return (
+            finding(
+                "no-blocker",
+                f"{_what(suffix, slicer)} carries no support blocker: a slicer with supports on "
+                "fills the cavities.",
+                "Slice without supports, or use --vaults slicer.",
+            ),
+        )
+    if rule == "slicer" and not chosen:
+        why = (
+            "The walls are too thin for a support blocker"
+            if carries_blocker(suffix, slicer)
+            else f"{_what(suffix, slicer)} carries no support blocker"
+        )
+        return (
+            finding(
+                "vaults-for-slicer",
+                f"{why}, so the vaults keep the slicer's overhang rule: more of them, and a longer "
+                "print.",
+                "Write a .3mf file for PrusaSlicer."
+                if not carries_blocker(suffix, slicer)
+                else "Use a thicker --wall.",
+            ),
+        )
+    return ()
 
 
 def format_findings(

@@ -28,12 +28,14 @@ class Contents:
     """Everything that a file of a part is made from.
 
     infill : the slicer's infill inside the part, None for a part with cavities.
+    blocker : where a slicer makes no supports, None for anywhere.
     """
 
     part: Part
     profile: Profile
     infill: Infill | None
     figures: Figures
+    blocker: Manifold | None = None
 
 
 def write_part(contents: Contents, path: str | Path, slicer: SlicerName = "prusa") -> None:
@@ -81,7 +83,7 @@ def _as_3mf(contents: Contents, manifold: Manifold, *, plain: bool) -> bytes:
     if infill is not None:
         item = infill_item(manifold, infill.ballast, name, profile)
     else:
-        item = solid_item(manifold, name, profile)
+        item = solid_item(manifold, name, profile, blocker=contents.blocker)
     return write_3mf(
         [item],
         thumbnail_png=thumbnail_png(*quantized_arrays(manifold), THUMBNAIL_SIZE),

@@ -21,6 +21,7 @@ from printprep.pipeline.filled import Filled
 from printprep.pipeline.hollowable import hollowable
 from printprep.stand.lean import tilt_toward
 from printprep.stand.stability import stability
+from printprep.supports.blocker import without_bores
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,6 +59,7 @@ def fill_with_cavity(
         program = volume.program(prepared.solid)
         choice = program.choose(options.base, lean)
     with clock.stage("solve"):
+        drainer = Drainer(volume.profile) if volume.profile.drain.count else None
         solved = solve_and_carve(
             prepared.solid,
             volume.manifold,
@@ -66,8 +68,11 @@ def fill_with_cavity(
             lean,
             objective=objective_of(options.objective),
             solver=options.solver,
-            drainer=Drainer(volume.profile) if volume.profile.drain.count else None,
+            drainer=drainer,
         )
+    blocker = volume.blocker
+    if blocker is not None and drainer is not None:
+        blocker = without_bores(blocker, drainer.bores, volume.profile)
     return Filled(
         profile=volume.profile,
         depths=volume.depths,
@@ -77,6 +82,7 @@ def fill_with_cavity(
         stability=solved.stability,
         volume_mm3=solved.part.manifold.volume(),
         supports=volume.supports,
+        blocker=blocker if solved.part.cavities else None,
         drainage=solved.drainage,
     )
 

@@ -12,7 +12,7 @@ import numpy as np
 from printprep.errors import UsageError
 from printprep.pipeline.options import AS_IN_FILE, FillOptions, Placement, check_resolution
 from printprep.progress import SILENT, Progress
-from printprep.supports.policy import supports_wanted
+from printprep.supports.policy import vault_choice
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -71,7 +71,7 @@ def explore(
     """The Pareto curve of mass against lean; each point is a proven optimum.
 
     Parameters are those of :func:`printprep.hollow`; of the options only resolution, base and
-    self_support count.  ``count`` leans are solved, evenly spaced from 0° to the largest that any
+    vaults count.  ``count`` leans are solved, evenly spaced from 0° to the largest that any
     filling on any base reaches (at most 60°).
 
     Raises
@@ -91,7 +91,7 @@ def explore(
         raise UsageError(f"--points {count} is not between 2 and 200.", "The default is 13.")
     check_resolution(options.resolution)
     settings = load_profile(profile, {**(overrides or {}), "stability.lean_margin_deg": 0.0})
-    supports_wanted(options.self_support, settings)
+    vault_choice(options.vaults, settings)
     prepared = settle_voids(prepare(model, settings, placement, progress), options, progress)
     solid = prepared.solid
     grams = settings.material.density_g_cm3 / 1000

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from printprep.density.program import Program
     from printprep.grid.depth import Depths
     from printprep.profiles import Profile
@@ -19,7 +21,7 @@ class Filled:
     profile : the profile with the settings that the part needs.
     depths, program : what it was solved with.
     stability : how the part stands;  volume_mm3 : volume of the material that prints.
-    supports, drainage, infill : None where the fill has none.
+    supports, blocker, drainage, infill : None where the fill has none.
     findings : those that only the fill can make.
     """
 
@@ -31,6 +33,7 @@ class Filled:
     stability: Stability
     volume_mm3: float
     supports: Supports | None = None
+    blocker: Manifold | None = None
     drainage: Drainage | None = None
     infill: Infill | None = None
     findings: tuple[Finding, ...] = ()

@@ -45,9 +45,9 @@ class Fill:
 
 
 def _check_cavity(profile: Profile, options: FillOptions) -> None:
-    from printprep.supports.policy import supports_wanted
+    from printprep.supports.policy import vault_choice
 
-    supports_wanted(options.self_support, profile)
+    vault_choice(options.vaults, profile)
     if options.slicer is not None:
         raise UsageError(
             "--slicer has no effect without --fill infill: it weighs prints with infill.",
@@ -79,7 +79,7 @@ def _estimate_cavity(
 def _check_infill(profile: Profile, options: FillOptions) -> None:
     from printprep.infill.options import check_infill
 
-    check_infill(profile, objective=options.objective, self_support=options.self_support is True)
+    check_infill(profile, objective=options.objective, vaults=options.vaults)
 
 
 def _only_3mf(suffix: str, slicer: SlicerName) -> None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Advice, AlternativeFill, Finding, Lean, Part, Solid
+    from printprep.types import Advice, AlternativeFill, Finding, Lean, Part, Solid, VaultChoice
 
 
 def hollow_with(
@@ -93,7 +93,7 @@ def hollow(
     device: str = "cpu",
     base: BasePolicy = "auto",
     voids: VoidPolicy = "fill",
-    self_support: bool | None = None,
+    vaults: VaultChoice | None = None,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
     fill: str = "cavity",
@@ -122,7 +122,9 @@ def hollow(
         "never", "always".
     voids : "fill" fills the sealed voids that the model brings, but for those that hold a body of
         their own, before anything is hollowed; "keep" leaves all of them.
-    self_support : whether vaults carry the ceilings of cavities; None: if the process needs them.
+    vaults : whose overhang rule the vaults keep that carry the ceilings of cavities: "printer",
+        "slicer", or "none" for no vaults.  None takes the printer's if the process needs vaults.
+        Such a part is written as a 3MF for PrusaSlicer, with a support blocker.
     drains : least number of drain holes in each cavity, 0 for none;  drain_diameter_mm : their
         diameter.  None takes the profile's.
     fill : a name in :data:`printprep.pipeline.fills.FILLS`: "cavity", or "infill", the profile's
@@ -148,7 +150,7 @@ def hollow(
         solver=Solver(solver, device),
         base=base,
         voids=voids,
-        self_support=self_support,
+        vaults=vaults,
         slicer=slicer,
         max_memory_mib=max_memory_mib,
     )
@@ -210,6 +212,7 @@ def context_of(
         reachable_deg=filled.density.reachable_deg,
         advice=advice,
         drainage=filled.drainage,
+        blocker=filled.blocker,
     )
 
 
@@ -264,6 +267,7 @@ def result_of(
         findings=findings,
         advice=context.advice,
         supports=filled.supports,
+        blocker=filled.blocker,
         drainage=filled.drainage,
         infill=filled.infill,
         alternative_fill=alternative,

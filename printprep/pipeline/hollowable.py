@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from printprep.cavity.surface import cavity_surface
 from printprep.cavity.ties import tied
-from printprep.supports.policy import supported, supports_wanted
+from printprep.errors import UsageError
+from printprep.supports.blocker import support_blocker
+from printprep.supports.policy import supported, vault_choice
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.progress import Progress
-    from printprep.types import Solid, Supports
+    from printprep.types import Solid, Supports, VaultChoice
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +29,14 @@ class Hollowable:
 
     manifold : the volume without the vaults;  depths : below the model's surface, on the grid.
     supports : the vaults, None if there are none.
+    blocker : where a slicer makes no supports, None where vaults keep the slicer's rule.
     profile : the profile with the settings that follow from the vaults.
     """
 
     manifold: Manifold
     depths: Depths
     supports: Supports | None
+    blocker: Manifold | None
     profile: Profile
 
     def program(self, solid: Solid) -> Program:
@@ -59,20 +63,45 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
         )
     with progress.stage("cavity"):
         manifold = tied(cavity_surface(solid.manifold, depths.field, profile.wall_mm))
-    if manifold.is_empty() or not supports_wanted(options.self_support, profile):
-        return Hollowable(manifold, depths, None, profile)
+    if manifold.is_empty() or not profile.traits.ceilings_sag:
+        return Hollowable(manifold, depths, None, None, profile)
     with progress.stage("supports"):
-        manifold, supports = supported(manifold, profile)
-    return Hollowable(manifold, depths, supports, _without_plate_only(profile, supports))
+        return _vaulted(manifold, depths, prepared, vault_choice(options.vaults, profile), options)
 
 
-def _without_plate_only(profile: Profile, supports: Supports) -> Profile:
-    """The profile without the key that keeps a slicer's supports out of cavities, if none go there.
+def _vaulted(
+    volume: Manifold, depths: Depths, prepared: Prepared, choice: VaultChoice, options: FillOptions
+) -> Hollowable:
+    """The hollowable volume with the vaults of a choice, and with the blocker that they count on.
+
+    Where walls are too thin for a blocker, the vaults keep the slicer's rule.
+    """
+    profile, blocker = prepared.profile, None
+    if choice != "slicer":
+        assert depths.field is not None  # the volume is not empty
+        blocker = support_blocker(prepared.solid.manifold, depths.field, volume, profile)
+    if choice == "printer" and blocker is None:
+        if options.vaults is not None:
+            raise UsageError(
+                f"Walls of {profile.wall_mm:g} mm are too thin for a support blocker, which vaults "
+                "for the printer need.",
+                "Use --vaults slicer, or a thicker --wall.",
+            )
+        choice = "slicer"
+    if choice == "none":
+        kept = profile if blocker is None else _without_plate_only(profile)
+        return Hollowable(volume, depths, None, blocker, kept)
+    volume, supports = supported(volume, profile, choice)
+    sure = blocker is not None or not (supports.unsupported_mm2 > 0 or supports.islands)
+    kept = _without_plate_only(profile) if sure else profile
+    return Hollowable(volume, depths, supports, blocker, kept)
+
+
+def _without_plate_only(profile: Profile) -> Profile:
+    """The profile without the key that keeps a slicer's supports out of cavities.
 
     The key also removes outside supports that would rest on the model.
     """
-    if supports.unsupported_mm2 > 0 or supports.islands:
-        return profile
     kept = dict(profile.slicer.object_settings)
     kept.pop("support_material_buildplate_only", None)
     slicer = profile.slicer.model_copy(update={"object_settings": kept})

@@ -19,7 +19,7 @@ from printprep.progress import SILENT, Progress
 if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Drainage, Finding, Severity, SlicerName
+    from printprep.types import Drainage, Finding, Severity, SlicerName, VaultChoice
     from printprep.verify.run import Verified
 
 
@@ -78,13 +78,21 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
         Then nothing is written.
     """
     from printprep.check import at_or_above, sorted_findings
-    from printprep.output.limits import format_findings
+    from printprep.output.limits import format_findings, vault_findings
     from printprep.pipeline.hollow import hollow_with
     from printprep.verify.unwritten import verify_result
 
     profile = check_job(job)
-    result = hollow_with(job.model, profile, job.placement, job.options, progress)
+    options = replace(job.options, vaults=_vaults(job, profile))
+    result = hollow_with(job.model, profile, job.placement, options, progress)
     file_findings = [*format_findings(result.profile, job.output, job.written_for)]
+    if result.supports is not None:
+        file_findings += vault_findings(
+            result.supports.rule,
+            job.output.suffix,
+            job.written_for,
+            chosen=job.options.vaults is not None,
+        )
     if job.plugs is not None:
         file_findings += _plug_findings(result.drainage, job.plugs)
     result = replace(result, findings=sorted_findings([*result.findings, *file_findings]))
@@ -100,6 +108,16 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     with progress.stage("write"):
         plugs = _write(job, result)
     return JobResult(result, findings, verified, job.output, plugs)
+
+
+def _vaults(job: Job, profile: Profile) -> VaultChoice | None:
+    """The vaults of a job: for the slicer where its file cannot carry a support blocker."""
+    from printprep.output.limits import carries_blocker
+
+    carried = carries_blocker(job.output.suffix, job.written_for)
+    if job.options.vaults is None and profile.traits.ceilings_sag and not carried:
+        return "slicer" if job.options.fill == "cavity" else None
+    return job.options.vaults
 
 
 def check_job(job: Job) -> Profile:
@@ -197,7 +215,7 @@ def _write(job: Job, result: HollowResult) -> Path | None:
     """Write the part and its plugs; return the file of the plugs, None if there are none."""
     from printprep.output.plugs import write_plugs
 
-    result.write(job.output, job.written_for)
+    result.write(job.output, job.written_for, without_blocker=True)
     if job.plugs is None or result.drainage is None or not result.drainage.drains:
         return None
     write_plugs(result.part, result.drainage, result.profile, job.plugs)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from printprep.density.program import BasePolicy
-    from printprep.types import Lean
+    from printprep.types import Lean, VaultChoice
 
 VoidPolicy = Literal["fill", "keep"]
 
@@ -52,7 +52,10 @@ class FillOptions:
     objective, solver : a name in :data:`printprep.objectives.OBJECTIVES`, and how it is solved.
     base : whether material may be added around the feet.
     voids : whether the model's own sealed voids are filled before hollowing, or stay.
-    self_support : whether vaults carry ceilings; None: if ceilings sag in the profile's process.
+    vaults : whose overhang rule the vaults keep that carry ceilings: "printer", which counts on a
+        support blocker in the file, or "slicer"; "none" for no vaults.  None takes the printer's
+        where ceilings sag in the profile's process, and the slicer's where the file that is written
+        cannot carry a blocker.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
     max_memory_mib : a model whose estimate exceeds this is refused; None: what the machine has
@@ -66,7 +69,7 @@ class FillOptions:
     solver: Solver = field(default_factory=Solver)
     base: BasePolicy = "auto"
     voids: VoidPolicy = "fill"
-    self_support: bool | None = None
+    vaults: VaultChoice | None = None
     slicer: Path | None = None
     max_memory_mib: float | None = None
 

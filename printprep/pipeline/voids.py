@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from printprep.mesh.sealed_voids import sealed_voids
 from printprep.mesh.shell_figures import pieces
-from printprep.supports.policy import supported, supports_wanted
+from printprep.supports.policy import supported, vault_choice
 from printprep.types import ModelVoids
 
 if TYPE_CHECKING:
@@ -40,13 +40,14 @@ def settle_voids(prepared: Prepared, options: FillOptions, progress: Progress) -
         voids = ModelVoids(filled_mm3=_volumes(found.empty), holding_mm3=holding)
         return replace(prepared, solid=replace(solid, manifold=found.whole), voids=voids)
     kept = found.empty
-    if supports_wanted(options.self_support, prepared.profile):
-        profile = prepared.profile
+    profile = prepared.profile
+    if profile.traits.ceilings_sag and vault_choice(options.vaults, profile) != "none":
+        # The slicer's rule, the stricter one: no support blocker reaches into these voids.
         with progress.stage("supports"):
             kept = tuple(
                 piece
                 for void in kept
-                for piece in pieces(supported(void, profile)[0], profile.crumb_mm3)
+                for piece in pieces(supported(void, profile, "slicer")[0], profile.crumb_mm3)
             )
     settled = replace(
         solid,

@@ -177,7 +177,8 @@ def _vaults(result: HollowResult) -> str:
     vaults = result.supports
     if vaults is None or not vaults.capitals:
         return "none needed: the ceilings print without support"
-    text = f"on {vaults.columns} columns, {_mass(result.supports_mass_g)}"
+    steep = "as steep as the printer lays" if vaults.rule == "printer" else "for any slicer"
+    text = f"on {vaults.columns} columns, {_mass(result.supports_mass_g)}, {steep}"
     if vaults.unsupported_mm2 or vaults.islands:
         text += f"; {vaults.unsupported_mm2:.1f} mm² of ceiling still unsupported"
     return text

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
     from printprep.profiles import Profile
+    from printprep.types import VaultRule
 
 # Simplifying the cavity may move faces by so much: a fiftieth of the slicer's off.
 SIMPLIFY_MM = 0.003
@@ -56,18 +57,20 @@ class Vaults:
     islands: int
 
 
-def vaulted(hollowable_volume: Manifold, profile: Profile) -> Vaults:
+def vaulted(hollowable_volume: Manifold, profile: Profile, built: VaultRule) -> Vaults:
     """Carry every ceiling of a hollowable volume with solids inside it.
 
     Parameters
     ----------
     hollowable_volume : all that may be cavity, in printing position, with thick walls around it.
     profile : an fdm profile: layers, lines, least feature.
+    built : the overhang rule that the vaults keep.
 
     Raises UsageError for a profile without a nozzle.
     """
-    members, rule = MemberSizes.of(profile), built_for(profile)
-    samples = ceiling_samples(hollowable_volume, slope_deg(profile))
+    rule = built_for(profile, built)
+    members = MemberSizes.of(profile, rule)
+    samples = ceiling_samples(hollowable_volume, slope_deg(rule, profile.overhang_deg))
     capitals, forest = _raised(samples, hollowable_volume, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
     cavity = _without(hollowable_volume, wide + narrow).simplify(SIMPLIFY_MM)

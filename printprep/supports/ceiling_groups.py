@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from printprep.supports.member_sizes import MemberSizes
 
 # The assumed cost of a column that is not known yet: this share of one straight to the floor, at
-# most the volume until it meets another column, at least the volume that makes a funnel worthwhile.
+# most that of the length until it meets another column, at least that of the length that makes a
+# funnel worthwhile.
 COLUMN_SHARE = 0.8
-MOST_COLUMN_MM3 = 5.0
-LEAST_COLUMN_MM3 = 2.0
+MOST_COLUMN_MM = 4.4
+LEAST_COLUMN_MM = 1.8
 # Side of the first patches.
 PATCH_MM = 2.6
 NEIGHBOURS = 6
@@ -54,7 +55,7 @@ class Groups:
 
 @dataclass(frozen=True, eq=False)
 class Price:
-    """The cost in volume of funnels and their columns.
+    """The cost of funnels and their columns, in volume.
 
     area_mm2 : ceiling that each sample stands for;  lookup : of the hollowable volume.
     """
@@ -65,10 +66,10 @@ class Price:
 
     def mm3(self, sets: SetCover, nodes: Float) -> Float:
         """(s,) mm³, funnels on nodes (s, 3) mm and the columns under them."""
-        section_mm2 = np.pi * self.members.radius_mm**2
-        column = COLUMN_SHARE * section_mm2 * self.lookup.headroom_mm(nodes)
-        column = np.clip(column, LEAST_COLUMN_MM3, MOST_COLUMN_MM3)
-        result: Float = column + sets.volume_mm3(nodes, self.members, self.area_mm2)
+        length = COLUMN_SHARE * self.lookup.headroom_mm(nodes)
+        length = np.clip(length, LEAST_COLUMN_MM, MOST_COLUMN_MM)
+        funnels = sets.volume_mm3(nodes, self.members, self.area_mm2)
+        result: Float = self.members.cost_mm2 * length + funnels
         return result
 
 

@@ -54,7 +54,7 @@ def raise_columns(
         near_mm, foot = stubs.get(tip, (np.inf, place))
         if np.isfinite(near_mm):
             length = near_mm
-        cost = float(members.volume_mm3(above, length))
+        cost = float(members.cost_mm3(above, length))
         meeting = _best_partner(
             tip, np.fromiter(waiting, np.int64), cost, footings, members, forest
         )
@@ -117,8 +117,8 @@ def _best_partner(
     above, above_others = forest.above_mm[tip], np.array([forest.above_mm[k] for k in others])
     mine, theirs = (np.linalg.norm(where - place, axis=1) for place in (here, there))
     trunk = np.maximum(above + mine, above_others + theirs)
-    total = members.volume_mm3(above, mine) + members.volume_mm3(above_others, theirs)
-    total += members.volume_mm3(trunk, left) - members.volume_mm3(above_others, alone)
+    total = members.cost_mm3(above, mine) + members.cost_mm3(above_others, theirs)
+    total += members.cost_mm3(trunk, left) - members.cost_mm3(above_others, alone)
     total[left <= 0] = np.inf
     best = int(np.argmin(total))
     if total[best] >= cost:
@@ -139,8 +139,8 @@ def _best_axis(tip: int, cost: float, members: MemberSizes, forest: Forest) -> i
         return None
     length = np.hypot(fall[reach], d[reach])
     below, carried = axes.below_mm[reach], axes.above_mm[reach]
-    total = members.volume_mm3(above, length)
-    thicker = members.volume_mm3(np.maximum(carried, above + length), below)
-    total += thicker - members.volume_mm3(carried, below)
+    total = members.cost_mm3(above, length)
+    thicker = members.cost_mm3(np.maximum(carried, above + length), below)
+    total += thicker - members.cost_mm3(carried, below)
     best = int(np.argmin(total))
     return int(reach[best]) if total[best] < cost else None

@@ -26,6 +26,7 @@ from printprep.overhang.limits import Acceptance, acceptance
 if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.profiles import Profile
+    from printprep.types import VaultRule
 
 # Slicers thin out their outlines, PrusaSlicer by its resolution: vaults rely on so much less reach.
 # (Without this, a cow's cavity that the rule itself accepts got 0.46 g of support.)
@@ -33,22 +34,26 @@ RESOLUTION_MM = 0.0125
 # Below a joint a column narrows to its own section, by a fifth of its radius over 2 mm or more
 # (solids.py), so its side leans so much farther than its axis.
 JOINT_TAN = 0.06
+# The exchange rate between time and material: printing a column of any thickness takes as long, per
+# mm of its height, as printing so much material elsewhere.  In every layer a column costs travel, a
+# retraction and the slow loop around it (docs/self-support.md has the curve).
+TIME_MM3_PER_MM = 1.5
 
 
-def built_for(profile: Profile) -> Acceptance:
-    """The slicer's rule with the reserve.  Raises UsageError for a profile without a nozzle."""
-    rule = acceptance(profile)
-    return replace(rule, off_mm=rule.off_mm - RESOLUTION_MM)
+def built_for(profile: Profile, rule: VaultRule) -> Acceptance:
+    """The rule with the reserve.  Raises UsageError for a profile without a nozzle."""
+    accepted = acceptance(profile, rule)
+    return replace(accepted, off_mm=accepted.off_mm - RESOLUTION_MM)
 
 
-def slope_deg(profile: Profile) -> float:
+def slope_deg(rule: Acceptance, cap_deg: float) -> float:
     """The overhang of a ceiling, from the vertical, beyond which capitals carry all of it.
 
     Along an even slope the rule allows tan θ = off / h, and c less only where a void closes.  Most
     slopes between the two end in a wall and pass; carrying them all adds a tenth to the vaults.
     The rule finds the few that close, and carry_flagged.py carries them.
     """
-    return min(math.degrees(math.atan(_slope_tan(built_for(profile)))), profile.overhang_deg)
+    return min(math.degrees(math.atan(_slope_tan(rule))), cap_deg)
 
 
 def _slope_tan(rule: Acceptance) -> float:
@@ -70,9 +75,9 @@ class MemberSizes:
     slenderness: float
 
     @staticmethod
-    def of(profile: Profile) -> MemberSizes:
-        """The sizes for a profile.  Raises UsageError for a profile without a nozzle."""
-        rule, cap_deg = built_for(profile), profile.overhang_deg
+    def of(profile: Profile, rule: Acceptance) -> MemberSizes:
+        """The sizes for a profile with a nozzle, and for a rule with the reserve."""
+        cap_deg = profile.overhang_deg
         lean_deg = math.degrees(math.atan(_slope_tan(rule) - JOINT_TAN))
         assert profile.column_slenderness is not None
         return MemberSizes(
@@ -108,15 +113,21 @@ class MemberSizes:
         half: Float = self.radius_mm * share**0.75
         return half
 
-    def volume_mm3(self, above_mm: Float | float, length_mm: Float | float) -> Float:
-        """Volume of columns that carry a tree.
+    def cost_mm3(self, above_mm: Float | float, length_mm: Float | float) -> Float:
+        """What columns cost that carry a tree: their volume, and the time they take as volume.
 
         above_mm : longest way up from the column to a tip;  length_mm : of the column; numbers, or
         arrays (…,) of one shape, as is the result.
         """
         above: Float = np.asarray(above_mm, dtype=np.float64)
-        result: Float = self._from_tip(above + length_mm) - self._from_tip(above)
+        volume: Float = self._from_tip(above + length_mm) - self._from_tip(above)
+        result: Float = volume + TIME_MM3_PER_MM * np.asarray(length_mm)
         return result
+
+    @property
+    def cost_mm2(self) -> float:
+        """What an upright column of the least thickness costs per mm, in mm³."""
+        return math.pi * self.radius_mm**2 + TIME_MM3_PER_MM
 
     def _from_tip(self, length: Float) -> Float:
         """(…,) mm³, columns of lengths (…,) mm from their tips down."""

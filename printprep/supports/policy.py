@@ -1,38 +1,48 @@
-"""Whether vaults carry the ceilings of cavities, and the hollowable volume with vaults."""
+"""Which overhang rule vaults are built for, and the hollowable volume with vaults."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
+from printprep.types import VAULT_CHOICES, VaultChoice
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.profiles import Profile
-    from printprep.types import Supports
+    from printprep.types import Supports, VaultRule
 
 
-def supports_wanted(requested: bool | None, profile: Profile) -> bool:
-    """Whether vaults carry the ceilings; None stands for "if ceilings sag in the process".
+def vault_choice(requested: VaultChoice | None, profile: Profile) -> VaultChoice:
+    """The choice; None stands for the printer's rule where ceilings sag, else for no vaults.
 
-    Raises UsageError if vaults are requested and ceilings of the process need none.
+    Raises UsageError for an unknown choice, or if vaults are requested and ceilings of the process
+    need none.
     """
-    if requested and not profile.traits.ceilings_sag:
+    if requested not in (None, *VAULT_CHOICES):
+        raise UsageError(
+            f"There are no vaults {requested!r}.", f"The choices are {', '.join(VAULT_CHOICES)}."
+        )
+    sag = profile.traits.ceilings_sag
+    if requested in ("printer", "slicer") and not sag:
         raise UsageError(
             f"Profile {profile.name} is for {profile.process}, where ceilings need no vaults.",
-            "Leave out --self-support, or choose a profile for filament.",
+            f"Leave out --vaults {requested}, or choose a profile for filament.",
         )
-    return profile.traits.ceilings_sag if requested is None else requested
+    return requested or ("printer" if sag else "none")
 
 
-def supported(hollowable_volume: Manifold, profile: Profile) -> tuple[Manifold, Supports]:
+def supported(
+    hollowable_volume: Manifold, profile: Profile, rule: VaultRule
+) -> tuple[Manifold, Supports]:
     """The hollowable volume without its vaults, and figures of the vaults."""
     from printprep.supports import vaulted
     from printprep.types import Supports
 
-    vaults = vaulted(hollowable_volume, profile)
+    vaults = vaulted(hollowable_volume, profile, rule)
     return vaults.cavity, Supports(
+        rule,
         vaults.capitals,
         vaults.columns,
         vaults.added_mm3,

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from printprep.supports.column_forest import Forest
     from printprep.supports.member_sizes import MemberSizes
 
-SIDES = 12
+FUNNEL_SIDES = 12
+COLUMN_SIDES = 8
 # Solids that only touch leave coincident faces: each reaches so far into the next.
 INTO_MM = 0.03
 # A funnel ends so far above the ceiling it carries.
@@ -46,8 +47,8 @@ class Frustum:
     def of_discs(low: Float, low_radius_mm: float, high: Float, high_radius_mm: float) -> Frustum:
         """The hull of two level discs with middles (3,) mm, ``low`` under ``high``."""
         upright = np.array([0.0, 0.0, -1.0])
-        lower = low + section(upright, low_radius_mm)
-        upper = high + section(upright, high_radius_mm)
+        lower = low + section(upright, low_radius_mm, FUNNEL_SIDES)
+        upper = high + section(upright, high_radius_mm, FUNNEL_SIDES)
         way = high - low
         cosine = float(way[2] / np.linalg.norm(way))
         across_mm = 2 * min(low_radius_mm, high_radius_mm) * cosine
@@ -58,17 +59,17 @@ class Frustum:
         return self.corners.min(axis=0), self.corners.max(axis=0)
 
 
-def section(way: Float, radius_mm: float) -> Float:
-    """(SIDES, 3) mm, corners of the level section of a round column along ``way`` (3,)."""
+def section(way: Float, radius_mm: float, sides: int = COLUMN_SIDES) -> Float:
+    """(sides, 3) mm, corners of the level section of a round column along ``way`` (3,)."""
     steep = float(np.hypot(way[0], way[1]))
     along = way[:2] / steep if steep > 0 else np.array([1.0, 0.0])
     longer = float(np.linalg.norm(way)) / abs(float(way[2]))
-    turn = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
-    around = radius_mm / np.cos(np.pi / SIDES)
+    turn = 2 * np.pi * (np.arange(sides) + 0.5) / sides
+    around = radius_mm / np.cos(np.pi / sides)
     toward, aside = around * longer * np.cos(turn), around * np.sin(turn)
     across = np.array([-along[1], along[0]])
     level = toward[:, None] * along + aside[:, None] * across
-    return np.column_stack([level, np.zeros(SIDES)])
+    return np.column_stack([level, np.zeros(sides)])
 
 
 def united(pieces: Sequence[Frustum]) -> Manifold:

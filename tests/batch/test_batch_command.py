@@ -29,15 +29,15 @@ def test_any_option_is_a_column_and_an_empty_cell_leaves_the_batchs(tmp_path):
     models(tmp_path, "a.stl", "x/b.stl")
     one, two = table(
         tmp_path,
-        "\ufefffile,lean,--wall,no-drains,set,self-support,profile\n"
-        "a.stl,15@90,2,,material.name=PC; printer.layer_height_mm=0.15,no,\n"
-        "x/b.stl,,,yes,,yes,\n",
+        "\ufefffile,lean,--wall,no-drains,set,vaults,profile\n"
+        "a.stl,15@90,2,,material.name=PC; printer.layer_height_mm=0.15,none,\n"
+        "x/b.stl,,,yes,,printer,\n",
     )
-    assert one.job.options == FillOptions(resolution=16, lean="15@90", self_support=False)
+    assert one.job.options == FillOptions(resolution=16, lean="15@90", vaults="none")
     assert one.job.overrides == {
         "wall_mm": 2.0, "material.name": "PC", "printer.layer_height_mm": "0.15",
     }  # fmt: skip
-    assert two.job.options == FillOptions(resolution=16, lean="12", self_support=True)
+    assert two.job.options == FillOptions(resolution=16, lean="12", vaults="printer")
     assert two.job.overrides == {"drain.count": 0}
     assert [item.output for item in (one, two)] == ["a.3mf", "x/b.3mf"]
     assert two.job.model == tmp_path / "x" / "b.stl"

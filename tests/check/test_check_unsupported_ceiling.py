@@ -6,12 +6,12 @@ import pytest
 from closed_form_parts import box, context, hollow_box, roofed
 
 from printprep.check.unsupported_ceiling import unsupported_ceiling
-from printprep.overhang.limits import acceptance
+from printprep.overhang.limits import slicer_acceptance
 
 
 def test_a_flat_ceiling_is_reported_with_its_area_and_place(fdm):
     (finding,) = unsupported_ceiling(context(hollow_box(20, 2)), fdm)
-    side = 16 - 2 * acceptance(fdm).off_mm
+    side = 16 - 2 * slicer_acceptance(fdm).off_mm
     assert finding.severity == "warning"
     assert finding.value == pytest.approx(side**2, rel=1e-3)
     assert finding.at_mm == pytest.approx((0, 0, 18), abs=0.2)

@@ -98,7 +98,7 @@ def test_no_drains_leave_the_cavity_sealed(tower):
 
 def test_filament_drains_only_where_asked(tower):
     asked = hollow(
-        tower, base="never", self_support=False, drains=2, drain_diameter_mm=4.0, resolution=32
+        tower, base="never", vaults="none", drains=2, drain_diameter_mm=4.0, resolution=32
     )
     assert asked.drainage is not None and len(asked.drainage.drains) >= 2
     assert {drain.diameter_mm for drain in asked.drainage.drains} == {4.0}

@@ -27,7 +27,7 @@ def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("-o out.stl", "cannot carry infill"),
         ("--for orca", "only for PrusaSlicer"),
         ("--objective paper", "makes only cavities, not infill"),
-        ("--self-support", "--self-support has no effect with infill"),
+        ("--vaults=printer", "--vaults printer has no effect with infill"),
         ("--drains 2 --drain-diameter 3", "has no cavities to drain"),
         ("--simulate", "simulation takes the mesh for solid"),
         ("--set infill.pattern=cubic", "infill.pattern"),

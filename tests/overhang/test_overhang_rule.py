@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box, cylinder
 
-from printprep.overhang.limits import Acceptance, acceptance
+from printprep.overhang.limits import Acceptance, slicer_acceptance
 from printprep.overhang.rule import unsupported_ceilings, unsupported_overhangs
 from printprep.profiles import load_profile
 
-RULE = acceptance(load_profile("fdm-pla-0.4"))
+RULE = slicer_acceptance(load_profile("fdm-pla-0.4"))
 PHASES = np.arange(0, 1, 0.05)
 
 

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
 
-from printprep.overhang.limits import acceptance
+from printprep.overhang.limits import slicer_acceptance
 from printprep.overhang.rule import unsupported_ceilings, unsupported_overhangs
 from printprep.overhang.suspects import SLACK_MM, Suspects
 from printprep.profiles import load_profile
 
-RULE = acceptance(load_profile("fdm-pla-0.4"))
+RULE = slicer_acceptance(load_profile("fdm-pla-0.4"))
 
 
 def hanging(corners: list[tuple[float, float, float]], size: float = 20.0) -> Manifold:

@@ -48,7 +48,7 @@ def test_the_file_holds_the_figures_of_the_result(job: Job):
 
 
 def test_a_job_is_data_and_its_file_the_same_bytes(job: Job, tmp_path: Path):
-    job = replace(job, options=replace(QUICK, self_support=False))
+    job = replace(job, options=replace(QUICK, vaults="none"))
     again = replace(pickle.loads(pickle.dumps(job)), output=tmp_path / "again.3mf")
     run_job(job)
     run_job(again)

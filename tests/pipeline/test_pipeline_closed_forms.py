@@ -22,7 +22,7 @@ SLOW = pytest.mark.slow
 
 def hollowed(manifold: Manifold, **options: object) -> HollowResult:
     mesh = trimesh.Trimesh(*arrays(manifold), process=False)
-    return hollow(mesh, **{"resolution": 48, "self_support": False, **options})  # type: ignore[arg-type]
+    return hollow(mesh, **{"resolution": 48, "vaults": "none", **options})  # type: ignore[arg-type]
 
 
 def test_a_cube_becomes_a_box_with_even_walls() -> None:
@@ -244,7 +244,7 @@ def test_vaults_are_weighed_in_the_program(size: tuple[float, float, float]) -> 
     prism = solids.leaning_prism(*size)
     options = {"base": "never", "lean": 6.0}
     plain = hollowed(prism, **options)
-    held = hollowed(prism, self_support=None, **options)
+    held = hollowed(prism, vaults=None, **options)
     assert held.supports is not None and held.supports.columns > 0
     assert held.supports.unsupported_mm2 == 0 and held.supports.islands == 0
     assert held.mass_g > plain.mass_g
@@ -260,13 +260,13 @@ def test_vaults_are_weighed_in_the_program(size: tuple[float, float, float]) -> 
 @pytest.mark.parametrize(("profile", "held"), [("fdm-pla-0.4", True), ("resin-standard", False)])
 def test_supports_go_by_the_process(profile: str, held: bool) -> None:
     block = solids.box(20, 20, 20)
-    result = hollowed(block, self_support=None, profile=profile, resolution=24)
+    result = hollowed(block, vaults=None, profile=profile, resolution=24)
     assert (result.supports is not None) == held
 
 
 def test_supports_are_refused_where_the_process_has_none() -> None:
     with pytest.raises(UsageError, match="resin"):
-        hollowed(solids.box(20, 20, 20), self_support=True, profile="resin-standard", resolution=24)
+        hollowed(solids.box(20, 20, 20), vaults="printer", profile="resin-standard", resolution=24)
 
 
 @SLOW

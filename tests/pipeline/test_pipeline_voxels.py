@@ -10,6 +10,7 @@ import pytest
 from printprep.errors import InputError
 from printprep.generators.model import read_model
 from printprep.pipeline.hollow import hollow
+from printprep.types import VaultChoice
 
 
 def surface_voxels(side: int) -> np.ndarray:
@@ -21,13 +22,13 @@ def surface_voxels(side: int) -> np.ndarray:
     return np.argwhere(solid & ~inner)
 
 
-@pytest.mark.parametrize("vaults", [False, pytest.param(None, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("vaults", ["none", pytest.param(None, marks=pytest.mark.slow)])
 def test_surface_voxels_are_hollowed_as_the_solid_they_enclose(
-    tmp_path: Path, vaults: bool | None
+    tmp_path: Path, vaults: VaultChoice | None
 ) -> None:
     path = tmp_path / "cube.npz"
     np.savez(path, coords=surface_voxels(32))
-    result = hollow(path, size_mm=40.0, resolution=32, self_support=vaults)
+    result = hollow(path, size_mm=40.0, resolution=32, vaults=vaults)
     # Half a voxel of each edge is bevelled by marching cubes.
     assert result.solid_mass_g == pytest.approx(64 * 1.24, rel=0.01)
     assert result.wall_min_mm >= 1.2 - 0.05  # type: ignore[operator]

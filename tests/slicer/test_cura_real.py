@@ -49,7 +49,7 @@ def test_a_block_prints_hollow(cura_engine: Path, tmp_path: Path, union: str):
 
 
 def test_a_sample_prints_hollow_and_stands(cura_engine: Path, samples_dir: Path, tmp_path: Path):
-    result = hollow(samples_dir / "spot.stl", size_mm=60, resolution=48, self_support=False)
+    result = hollow(samples_dir / "spot.stl", size_mm=60, resolution=48, vaults="none")
     printed = printed_by_cura(cura_engine, result, tmp_path)
     assert printed.mass_g == pytest.approx(result.mass_g, rel=0.04)
     assert printed.in_cavities_mm3 == 0.0

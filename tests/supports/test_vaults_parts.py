@@ -21,9 +21,9 @@ from printprep.supports.columns import raise_columns
 from printprep.supports.distance_to_footing import DistanceToFooting
 from printprep.supports.gussets import gussets
 from printprep.supports.inside_lookup import LOOKUP_MM, InsideLookup
-from printprep.supports.member_sizes import MemberSizes
+from printprep.supports.member_sizes import TIME_MM3_PER_MM, MemberSizes, built_for
 from printprep.supports.set_cover import OVERLAP_MM, REACH_MM, RISE_MM, SetCover
-from printprep.supports.solids import INTO_MM, SIDES, Frustum, columns, section, united
+from printprep.supports.solids import COLUMN_SIDES, INTO_MM, Frustum, columns, section, united
 
 MEMBERS = MemberSizes(theta_deg=35.5, lean_deg=38.0, thickness_mm=1.2, slenderness=12.0)
 
@@ -230,9 +230,8 @@ def test_a_column_sways_no_more_than_the_slenderest_thin_one(length):
 
 
 def test_the_slenderness_is_the_profile_s():
-    thick, thin = (
-        MemberSizes.of(load_profile("fdm-pla-0.4", {"column_slenderness": s})) for s in (6, 24)
-    )
+    profiles = [load_profile("fdm-pla-0.4", {"column_slenderness": s}) for s in (6, 24)]
+    thick, thin = (MemberSizes.of(p, built_for(p, "printer")) for p in profiles)
     length = np.array(20.0)
     assert thick.across_mm(length) == pytest.approx(0.6 * (20 / (6 * 1.2)) ** 0.75)
     assert thin.across_mm(length) == 0.6
@@ -241,11 +240,12 @@ def test_the_slenderness_is_the_profile_s():
 
 
 @given(st.floats(0, 60), st.floats(0, 60))
-def test_a_column_s_volume_is_that_of_its_frustums(above, length):
+def test_a_column_costs_its_frustums_and_its_time(above, length):
     share = np.linspace(0, 1, 4001)
     half = MEMBERS.across_mm(above + share * length)
     expected = np.trapezoid(math.pi * half**2, share * length)
-    assert MEMBERS.volume_mm3(above, length) == pytest.approx(expected, rel=1e-4, abs=1e-9)
+    expected += TIME_MM3_PER_MM * length
+    assert MEMBERS.cost_mm3(above, length) == pytest.approx(expected, rel=1e-4, abs=1e-9)
 
 
 def test_a_frustum_holds_its_discs():
@@ -261,9 +261,11 @@ def test_a_level_section_is_round_across_the_axis(lean_deg):
     corners = section(way, 0.6)
     axis = way / np.linalg.norm(way)
     across = corners - np.outer(corners @ axis, axis)
-    assert np.linalg.norm(across, axis=1) == pytest.approx(0.6 / math.cos(math.pi / SIDES))
+    assert np.linalg.norm(across, axis=1) == pytest.approx(0.6 / math.cos(math.pi / COLUMN_SIDES))
     longest = np.hypot(corners[:, 0], corners[:, 1]).max()
-    assert longest <= 0.6 / math.cos(math.pi / SIDES) / math.cos(math.radians(lean_deg)) + 1e-9
+    assert (
+        longest <= 0.6 / math.cos(math.pi / COLUMN_SIDES) / math.cos(math.radians(lean_deg)) + 1e-9
+    )
 
 
 def test_where_two_columns_meet_the_lower_one_holds_both():

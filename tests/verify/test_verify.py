@@ -84,7 +84,7 @@ def test_thick_walls_weigh_what_was_computed(prusa_slicer: Path, tmp_path: Path,
         trimesh.creation.box((30, 30, 12)),
         resolution=24,
         base="never",
-        self_support=False,
+        vaults="none",
         overrides={"wall_mm": wall_mm},
     )
     result.write(tmp_path / "thick.3mf")
