@@ -17,12 +17,16 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from printprep.errors import UsageError
+from printprep.errors import InputError, UsageError
+from printprep.input_file import read_plain_file
 from printprep.profile_schema import Profile
+from printprep.wording import shortened
 
 __all__ = ["DEFAULT_PROFILE", "Profile", "load_profile", "profile_names", "profile_source"]
 
 DEFAULT_PROFILE = "fdm-pla-0.4"
+_PROFILE_BYTES_MAX = 1 << 20
+_FACTS_MAX = 8
 
 _FOLDERS = (
     Path(__file__).resolve().parent / "_profiles",  # inside an installed wheel
@@ -40,8 +44,11 @@ def profile_source(name: str | Path) -> str:
     """TOML text of a profile, comments and sources included; `name` as for load_profile."""
     path = _find(name)
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        # A mark of the byte order, as some editors write one, is no part of the text.
+        return read_plain_file(path, _PROFILE_BYTES_MAX).decode("utf-8-sig")
+    except InputError as error:
+        raise UsageError(f"The profile cannot be read: {error.message}", error.hint) from error
+    except UnicodeDecodeError as error:
         raise UsageError(f"The profile {name} cannot be read: {error}.") from error
 
 
@@ -61,10 +68,7 @@ def load_profile(
     else:
         path = _find(name_or_path)
         source = str(name_or_path) if path.parent != _folder() else f"Profile {path.stem}"
-        try:
-            data = tomllib.loads(profile_source(name_or_path))
-        except tomllib.TOMLDecodeError as error:
-            raise UsageError(f"{source} is not valid TOML: {error}.") from error
+        data = _parsed(profile_source(name_or_path), source)
         if "name" in data:
             raise UsageError(
                 f"{source}: name is not a key of a profile.", "A profile is named after its file."
@@ -82,6 +86,16 @@ def load_profile(
         raise _explain(error, source, overrides) from error
 
 
+def _parsed(text: str, source: str) -> dict[str, Any]:
+    """TOML as a dict.  Raises UsageError, which begins with ``source``."""
+    try:
+        return tomllib.loads(text)
+    except RecursionError as error:
+        raise UsageError(f"{source} is not a profile: its values are nested too deep.") from error
+    except ValueError as error:  # TOMLDecodeError, or a number with thousands of digits
+        raise UsageError(f"{source} is not valid TOML: {shortened(str(error), 200)}.") from error
+
+
 def _folder() -> Path:
     for folder in _FOLDERS:
         if folder.is_dir():
@@ -94,13 +108,20 @@ def _find(name: str | Path) -> Path:
     if isinstance(name, str) and name in known:
         return _folder() / f"{name}.toml"
     path = Path(name)
-    if path.is_file():
+    if _is_there(path):
         return path
     if path.suffix == ".toml" or len(path.parts) > 1:
         raise UsageError(f"The profile file {name} does not exist.")
     close = difflib.get_close_matches(str(name), known, n=1)
     hint = f"Did you mean {close[0]}?" if close else f"Use one of {', '.join(known)}."
     raise UsageError(f"There is no profile named {name}.", hint)
+
+
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists() and not path.is_dir()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
 
 
 def _override(data: dict[str, Any], key: str, value: object) -> None:
@@ -115,7 +136,7 @@ def _override(data: dict[str, Any], key: str, value: object) -> None:
 def _toml_value(text: str) -> object:
     try:
         parsed = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # TOMLDecodeError, thousands of digits, deep nesting
         return text
     return parsed["value"] if len(parsed) == 1 else text
 
@@ -128,7 +149,9 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
         facts.setdefault(key, _fact(item["type"], path, item))  # a list's items count as one
     if overrides:
         source = f"{source} with the keys that were set"
-    lines = [f"{key} {fact}" for key, fact in facts.items()]
+    lines = [f"{shortened(key)} {fact}" for key, fact in facts.items()]
+    if len(lines) > _FACTS_MAX:
+        lines[_FACTS_MAX:] = [f"and {len(lines) - _FACTS_MAX} more"]
     return UsageError(
         f"{source}: {'; '.join(lines)}.",
         "`printprep profiles show NAME` shows every key in use.",
@@ -139,7 +162,7 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
     if kind in ("impossible", "forbidden"):
         return str(item["msg"])
     if kind == "unknown":
-        return f"is {item['input']!r}, {item['msg']}"
+        return f"is {_shown(item['input'])}, {item['msg']}"
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""
     if kind == "extra_forbidden" and owner:
@@ -149,7 +172,15 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
         return f"is missing; it {allowed}" if allowed else "is missing"
     if not isinstance(item["loc"][-1], str):
         return allowed or _must_be(item["msg"])
-    return f"is {item['input']!r}, {allowed or _must_be(item['msg'])}"
+    return f"is {_shown(item['input'])}, {allowed or _must_be(item['msg'])}"
+
+
+def _shown(value: object) -> str:
+    """A value as a message shows it, cut where it is long."""
+    try:
+        return shortened(repr(value))
+    except (RecursionError, ValueError):  # deep nesting, or thousands of digits
+        return "a value that is too long"
 
 
 def _must_be(message: str) -> str:

@@ -15,6 +15,7 @@ from printprep.stand.lean import tilt_toward
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.mesh.carry import Carried
     from printprep.output.figures import (
         BaseFigures,
         Cavities,
@@ -59,6 +60,7 @@ class HollowResult:
     blocker : where the file tells a slicer to make no supports, None if nowhere.
     wall_min_mm : thinnest wall between a cavity and the outside, None without a cavity.
     seconds : duration of each stage; no file contains it.
+    paint : colours of the part's outside, carried from the model; None where it has none.
     """
 
     model: Model
@@ -81,6 +83,7 @@ class HollowResult:
     simulation: Simulation | None = None
     infill: Infill | None = None
     alternative_fill: AlternativeFill | None = None
+    paint: Carried | None = None
 
     @property
     def lean_deg(self) -> float:
@@ -129,7 +132,9 @@ class HollowResult:
         """Everything that a file of the part is made from."""
         from printprep.output.part_file import Contents
 
-        return Contents(self.part, self.profile, self.infill, self.figures(), self.blocker)
+        return Contents(
+            self.part, self.profile, self.infill, self.figures(), self.blocker, self.paint
+        )
 
     def write(
         self, path: str | Path, slicer: SlicerName = "prusa", *, without_blocker: bool = False

@@ -24,6 +24,70 @@ VAULT_CHOICES: tuple[VaultChoice, ...] = get_args(VaultChoice)
 Rung = Literal["as-is", "union", "meshlab", "remesh"]
 
 
+@dataclass(frozen=True)
+class ReadNote:
+    """What a reader changed, left out or could not tell, so that the user knows what was read.
+
+    kind : "facet-count", the file's own count of its facets is wrong;  "cut-short", the rest of the
+    file is missing;  "left-out", parts of a project that are not the model's shape;
+    "read-together", several objects;  "subtracted", negative volumes;  "colours-lost", colours or
+    paint that no part carries.
+    """
+
+    kind: Literal[
+        "facet-count", "cut-short", "left-out", "read-together", "subtracted", "colours-lost"
+    ]
+    message: str
+    fix: str | None = None
+
+
+@dataclass(frozen=True)
+class Material:
+    """A material of a 3MF: its name, and its colour as "#RRGGBB" or "#RRGGBBAA"."""
+
+    name: str
+    colour: str
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one triangle is coloured and painted.
+
+    material : None where the file names none.
+    strokes : pairs of what is painted ("colour", "supports", "seam", "fuzzy") and the slicers'
+    code of it, the same in PrusaSlicer, BambuStudio and OrcaSlicer: hexadecimal digits, the last
+    first, that say how the triangle is split and what each piece is.
+    """
+
+    material: Material | None = None
+    strokes: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def splits(self) -> bool:
+        """Whether a code splits its triangle: the lowest two bits of its last digit say how."""
+        return self.whole != self
+
+    @property
+    def whole(self) -> Style:
+        """The style without the codes that split its triangle."""
+        whole = tuple(stroke for stroke in self.strokes if not int(stroke[1][-1], 16) & 3)
+        return self if len(whole) == len(self.strokes) else Style(self.material, whole)
+
+
+PLAIN = Style()
+
+
+@dataclass(frozen=True, eq=False)
+class Paint:
+    """The colours and the paint of a mesh.
+
+    styles : the first one is ``PLAIN``;  labels : (m,) the style of each face.
+    """
+
+    styles: tuple[Style, ...]
+    labels: Int
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """The triangles of the input, welded, in mm, z up, on the bed, centred on x = y = 0.
@@ -31,12 +95,18 @@ class Model:
     vertices : (n, 3) float64 mm;  faces : (m, 3) int64, counter-clockwise seen from outside.
     placement : (4, 4) float64, file coordinates → these coordinates.
     name : the file's stem, never a path.
+    notes : what the reader has to say;  paint : colours of the faces, None where there are none.
+    blockers : where the file tells a slicer to make no supports, each as vertices (n, 3) in file
+    coordinates and faces (m, 3).
     """
 
     vertices: Float
     faces: Int
     placement: Float
     name: str
+    notes: tuple[ReadNote, ...] = ()
+    paint: Paint | None = None
+    blockers: tuple[tuple[Float, Int], ...] = ()
 
 
 @dataclass(frozen=True)

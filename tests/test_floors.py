@@ -34,6 +34,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.mesh", "printprep.slicer"),
     ("printprep.threemf", "printprep.profiles"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
+    ("printprep.input_file",),
     (
         "printprep.arrays",
         "printprep.errors",

@@ -43,6 +43,13 @@ _KINDS = (
     Kind("repaired", "mm", ("info", "warning"), "a slicer that guesses what is inside"),
     Kind("self-intersection", None, _WARNING, "programs that disagree on what is inside"),
     Kind("watertight", None, _ERROR, "a cavity that a slicer fills, or an open layer"),
+    # what a reader made of the file
+    Kind("colours-lost", None, ("info", "warning"), "a part that is printed in one colour"),
+    Kind("cut-short", None, _WARNING, "half a model taken for a whole one"),
+    Kind("facet-count", None, _INFO, "facets that another program drops, or adds"),
+    Kind("left-out", None, _INFO, "a project of which only a part was read"),
+    Kind("read-together", None, _INFO, "several objects hollowed where one was meant"),
+    Kind("subtracted", None, _INFO, "a hole that came from a project without a word"),
     # size and place
     Kind("fits-bed", "mm", _ERROR, "a part that does not fit into the printer"),
     Kind("tiny-model", "mm", _ERROR, "a file in another unit, which prints far too small"),

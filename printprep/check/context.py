@@ -145,7 +145,12 @@ def separated(part: Manifold) -> tuple[Manifold, tuple[Manifold, ...]]:
 
 
 def context_of_solid(
-    part: Manifold, stability: Stability, lean: Lean, repair: Repair, raw: Model | None = None
+    part: Manifold,
+    stability: Stability,
+    lean: Lean,
+    repair: Repair,
+    raw: Model | None = None,
+    blocker: Manifold | None = None,
 ) -> CheckContext:
     """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside."""
     outside, cavities = separated(part)
@@ -158,4 +163,5 @@ def context_of_solid(
         repair=repair,
         hollowed=False,
         raw=raw,
+        blocker=blocker,
     )

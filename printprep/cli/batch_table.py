@@ -17,11 +17,14 @@ import click
 from printprep.batches.item import SUFFIXES, Item, item_of
 from printprep.cli.part_options import job_of, part_options
 from printprep.errors import InputError, UsageError
+from printprep.input_file import check_plain_file
+from printprep.wording import shortened
 
 FILE, OUTPUT = "file", "output"
 _YES, _NO = ("yes", "true", "1"), ("no", "false", "0")
 # A table is text that a person made: a million models are a file of a few hundred megabytes.
 MOST_ROWS = 1_000_000
+_TABLE_BYTES_MAX = 256 << 20
 
 
 def items_in(
@@ -42,7 +45,7 @@ def items_in(
             items.append(_item(table, row, given, folder, suffix, fail_on))
         except (UsageError, click.UsageError, InputError) as error:
             what = error.format_message() if isinstance(error, click.UsageError) else error.message
-            wrong.append(f"line {line}: {what}")
+            wrong.append(f"line {line}: {shortened(what, 300)}")
     if wrong:
         more = f" (and {len(wrong) - 10} more)" if len(wrong) > 10 else ""
         raise UsageError(f"{table}: {' '.join(wrong[:10])}{more}", "Nothing was started.")
@@ -51,10 +54,11 @@ def items_in(
 
 def _rows(table: Path) -> Iterator[tuple[int, dict[str, str]]]:
     """Each row with its line; columns by option name without dashes."""
+    check_plain_file(table, _TABLE_BYTES_MAX)
     try:
         with table.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.DictReader(file)
-            columns = [name.strip().lstrip("-") for name in reader.fieldnames or ()]
+            columns = [(name or "").strip().lstrip("-") for name in reader.fieldnames or ()]
             _check_columns(table, columns)
             for count, row in enumerate(reader):
                 if count >= MOST_ROWS:
@@ -65,6 +69,11 @@ def _rows(table: Path) -> Iterator[tuple[int, dict[str, str]]]:
                         "Quote cells that hold commas.",
                     )
                 cells = [(value or "").strip() for value in row.values()]
+                if any("\0" in cell for cell in cells):
+                    raise InputError(
+                        f"{table}: line {reader.line_num}: a cell holds a zero character.",
+                        "Save the table as text in UTF-8.",
+                    )
                 if any(cells):
                     yield reader.line_num, dict(zip(columns, cells, strict=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -77,12 +86,13 @@ def _check_columns(table: Path, columns: list[str]) -> None:
         raise UsageError(f"{table} has no column {FILE}.", "Give each model's file in it.")
     for name in columns:
         if columns.count(name) > 1:
-            raise UsageError(f"{table} has the column {name} twice.", "Keep one.")
+            raise UsageError(f"{table} has the column {shortened(name)} twice.", "Keep one.")
         if name not in (FILE, OUTPUT, *options):
             close = difflib.get_close_matches(name, (FILE, OUTPUT, *options), n=1)
             known = ", ".join((FILE, OUTPUT, *options))
             hint = f"Did you mean {close[0]}?" if close else f"Columns are {known}."
-            raise UsageError(f"{table}: {name} is not an option of `printprep hollow`.", hint)
+            what = f"{shortened(name)} is not an option of `printprep hollow`"
+            raise UsageError(f"{table}: {what}.", hint)
 
 
 def _item(
@@ -99,8 +109,12 @@ def _item(
     if not name:
         raise UsageError("the column file is empty.")
     model = table.parent / name
-    if not model.is_file():
-        raise InputError(f"the file {name} does not exist.")
+    try:
+        there = model.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        there = False
+    if not there:
+        raise InputError(f"the file {shortened(name, 200)} does not exist.")
     cells = {key: cell for key, cell in row.items() if cell and key not in (FILE, OUTPUT)}
     words = [word for key, cell in cells.items() for word in _words(key, cell)]
     context = _ROW.make_context("row", words, default_map=dict(given))

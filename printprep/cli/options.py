@@ -38,8 +38,25 @@ def model_argument(command: Command) -> Command:
 
 
 def placement_options(command: Command) -> Command:
-    """Unit, axis and size of the model."""
+    """What to take from the file; unit, axis and size of the model."""
     return together(
+        click.option(
+            "--plate",
+            type=click.IntRange(1),
+            metavar="N",
+            help="Plate of a 3MF project to read; needed where it has several.",
+        ),
+        click.option(
+            "--object",
+            "item",
+            metavar="NAME|N",
+            help="The one object of a 3MF to read, by its name or its number. Default: all.",
+        ),
+        click.option(
+            "--partial",
+            is_flag=True,
+            help="Take the facets that are there from an STL or PLY file that is cut short.",
+        ),
         click.option(
             "--units",
             type=click.Choice(UNITS),

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from printprep.pipeline.job import Job
 
 _SOLVERS = tuple(dict.fromkeys(s for row in OBJECTIVES.values() for s in row.solvers))
-_PLACEMENT = ("units", "up", "scale", "height_mm", "size_mm")
+_PLACEMENT = ("plate", "item", "partial", "units", "up", "scale", "height_mm", "size_mm")
 
 
 def part_options(command: Command) -> Command:

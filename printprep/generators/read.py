@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import io
+import math
 import pickle
+import struct
 import tokenize
 import warnings
 import zipfile
@@ -16,17 +19,40 @@ from numpy.typing import NDArray
 
 from printprep.errors import InputError
 from printprep.generators.voxel_arrays import LIMIT_BYTES
+from printprep.input_file import check_plain_file
+from printprep.wording import printable, shortened
 
 NAMES = ("coords", "coordinates", "voxels", "binary_voxel", "occupancy")
 """Names of the voxel array in a file with several arrays, in order of preference."""
 
+_NPY_HEAD_MAX = 16 << 10  # more than numpy's own longest header
+
 SUFFIXES = (".npz", ".npy", ".pt")
 
-DAMAGE = (OSError, ValueError, EOFError, KeyError, MemoryError, zipfile.BadZipFile, zlib.error)
+DAMAGE = (
+    OSError,
+    ValueError,
+    EOFError,
+    KeyError,
+    MemoryError,
+    OverflowError,
+    RecursionError,
+    RuntimeError,  # an encrypted member
+    zipfile.BadZipFile,
+    zlib.error,
+)
 """Errors that readers raise on damaged or foreign files; they have no common type."""
 
-NUMPY_ERRORS = (*DAMAGE, SyntaxError, tokenize.TokenError, NotImplementedError)
-TORCH_ERRORS = (*DAMAGE, RuntimeError, IndexError, TypeError, AttributeError)
+NUMPY_ERRORS = (
+    *DAMAGE,
+    SyntaxError,
+    TypeError,
+    AttributeError,
+    struct.error,
+    tokenize.TokenError,
+    NotImplementedError,
+)
+TORCH_ERRORS = (*DAMAGE, IndexError, TypeError, AttributeError, AssertionError, struct.error)
 
 
 def read_voxels(path: Path | str) -> NDArray[Any]:
@@ -46,11 +72,7 @@ def read_voxels(path: Path | str) -> NDArray[Any]:
             f"{path}: {suffix or 'a file without suffix'} is not a voxel file.",
             "Use .npz, .npy or .pt.",
         )
-    try:
-        size = path.stat().st_size
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}.", "Check the path.") from error
-    _limit(path, size)
+    check_plain_file(path, LIMIT_BYTES)
     return _torch_file(path) if suffix == ".pt" else _numpy_file(path, suffix)
 
 
@@ -71,8 +93,29 @@ def _numpy_file(path: Path, suffix: str) -> NDArray[Any]:
 
 def _array(handle: IO[bytes]) -> NDArray[Any]:
     """An array of any shape (…, …) in numpy's format, without pickled objects."""
-    array: NDArray[Any] = np.lib.format.read_array(handle, allow_pickle=False)
-    return array
+    head = handle.read(_NPY_HEAD_MAX)
+    stream = io.BytesIO(head)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a header of an old numpy
+        version = np.lib.format.read_magic(stream)
+        readers = {
+            (1, 0): np.lib.format.read_array_header_1_0,
+            (2, 0): np.lib.format.read_array_header_2_0,
+        }
+        if version not in readers:
+            raise ValueError(f"its format {version} is not known")
+        shape, fortran, dtype = readers[version](stream)
+    if dtype.hasobject:
+        raise ValueError("it holds pickled objects")
+    # Compared as whole numbers, since a product of them may overflow an array's size.
+    size = math.prod(shape) * dtype.itemsize
+    if min(shape, default=1) < 0 or size > LIMIT_BYTES:
+        raise ValueError("its header promises more than one grid of voxels")
+    data = head[stream.tell() :] + handle.read(max(size - (len(head) - stream.tell()), 0))
+    if len(data) < size:
+        raise ValueError(f"it is cut short: {len(data)} of {size} bytes are there")
+    flat: NDArray[Any] = np.frombuffer(data[:size], dtype=dtype, count=math.prod(shape))
+    return flat.reshape(shape, order="F" if fortran else "C")
 
 
 def _torch_file(path: Path) -> NDArray[Any]:
@@ -118,7 +161,7 @@ def _chosen(path: Path, names: list[str]) -> str:
     for name in NAMES:
         if name in names:
             return name
-    listed = ", ".join(names[:8]) or "none"
+    listed = printable(", ".join(shortened(name) for name in names[:8])) or "none"
     raise InputError(
         f"{path}: none of its arrays ({listed}) has a known name.",
         f"Name the voxel array {NAMES[0]}.",
@@ -137,6 +180,6 @@ def _limit(path: Path, size: int) -> None:
 def _unreadable(path: Path, error: BaseException) -> InputError:
     first = str(error).partition("\n")[0] or type(error).__name__
     return InputError(
-        f"{path}: the file cannot be read as voxels ({first}).",
+        f"{path}: the file cannot be read as voxels ({shortened(first, 160)}).",
         "Save it again with numpy or torch.",
     )

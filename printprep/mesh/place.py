@@ -15,6 +15,11 @@ if TYPE_CHECKING:
     from printprep.mesh.read import RawMesh
 
 
+# Larger than any printer, and smaller than anything that one can print: such numbers are a wrong
+# unit, and no stage can work on them.
+_LARGEST_MM = 5000.0
+_SMALLEST_MM = 1e-3
+
 # Proper rotations (determinant +1) by quarter turns that take the named file axis to +z: about x
 # for ±y, about y for ±x, half a turn about x for −z, the shortest turn in each case.
 _TURNS: dict[str, tuple[tuple[int, int, int], ...]] = {
@@ -58,20 +63,15 @@ def place(
     ------
     UsageError : two of these at once, one that is not a positive number, an unknown axis, or a
         height for a mesh that is flat.
-    GeometryError : no number holds the size.
+    GeometryError : the placed model is larger or smaller than anything that is printed.
     """
     turn = rotation(up)
     turned = raw.vertices @ turn.T
     extents = turned.max(axis=0) - turned.min(axis=0)
     factor = _factor(extents, scale, height_mm, size_mm)
-    with np.errstate(over="ignore", invalid="ignore"):
-        scaled = turned * factor
-    if not (math.isfinite(factor) and np.isfinite(scaled).all()):
-        raise GeometryError(
-            f"{raw.name} is {float(extents.max()):.3g} mm long, which no factor brings to a size "
-            "that can be computed with.",
-            "Name the unit of the file (--units), or write it again from the program it is from.",
-        )
+    side_mm = float(extents.max()) * factor
+    refuse_size(raw.name, side_mm if math.isfinite(factor) else float(extents.max()))
+    scaled = turned * factor
     low, high = scaled.min(axis=0), scaled.max(axis=0)
     shift = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     step = np.eye(4)
@@ -82,7 +82,28 @@ def place(
         faces=raw.faces,
         placement=step @ raw.from_file,
         name=raw.name,
+        notes=raw.notes,
+        paint=raw.paint,
+        blockers=raw.blockers,
     )
+
+
+def refuse_size(name: str, side_mm: float) -> None:
+    """Raise GeometryError for a longest side that no printer prints."""
+    if _SMALLEST_MM <= side_mm <= _LARGEST_MM:
+        return
+    small = side_mm < _SMALLEST_MM
+    raise GeometryError(
+        f"{name} is {_length(side_mm)} along its longest side: too {'small' if small else 'large'} "
+        f"to print ({'less' if small else 'more'} than "
+        f"{_SMALLEST_MM if small else _LARGEST_MM:g} mm).",
+        "Name the unit of the file with --units, or the size in mm with --size or --scale.",
+    )
+
+
+def _length(side_mm: float) -> str:
+    """A length in words, in metres where that is plainer ("100 m")."""
+    return f"{side_mm / 1000:.4g} m" if 1e3 <= side_mm < 1e7 else f"{side_mm:.4g} mm"
 
 
 def _factor(

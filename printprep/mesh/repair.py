@@ -112,9 +112,13 @@ def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[s
         )
     if not crumbs.any():
         return model, ()
-    vertices, faces = compact(model.vertices, model.faces[~crumbs[figures.label]])
+    stays = ~crumbs[figures.label]
+    vertices, faces = compact(model.vertices, model.faces[stays])
+    paint = model.paint
+    if paint is not None:
+        paint = replace(paint, labels=paint.labels[stays])
     sentence = f"Left out {counted(int(crumbs.sum()), 'shell')} too small to print."
-    return replace(model, vertices=vertices, faces=faces), (sentence,)
+    return replace(model, vertices=vertices, faces=faces, paint=paint), (sentence,)
 
 
 def _refuse_flat(model: Model) -> None:

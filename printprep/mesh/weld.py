@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from printprep.arrays import Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,32 @@ class EdgeCounts:
     crowded_edges: int
 
 
-# Two corners closer than this, relative to the largest coordinate, are one corner, rounded to
-# single precision in two ways: four units in the last place of a float32 (2⁻²⁴ each).
+# Two corners closer than this, relative to the size of the model, are one corner, rounded to single
+# precision in two ways: four units in the last place of a float32 (2⁻²⁴ each).
 _NOISE = 4 * 2.0**-24
+# The share of corners that tell how large the model is: one that is damaged must not.
+_USUAL = 0.99
+
+
+@dataclass(frozen=True, eq=False)
+class Welded:
+    """A welded mesh.
+
+    vertices : (n, 3);  faces : (m, 3);  kept : (m,) which of the faces given each one was.
+    """
+
+    vertices: Float
+    faces: Int
+    kept: Int
 
 
 def weld(vertices: Float, faces: Int) -> tuple[Float, Int]:
+    """The vertices (n, 3) and faces (m, 3) of :func:`welded`."""
+    found = welded(vertices, faces)
+    return found.vertices, found.faces
+
+
+def welded(vertices: Float, faces: Int) -> Welded:
     """Join vertices at one position, and drop faces with a repeated corner and unused vertices.
 
     vertices : (n, 3);  faces : (m, 3);  returns both, with fewer rows.  Positions are joined where
@@ -40,16 +60,17 @@ def weld(vertices: Float, faces: Int) -> tuple[Float, Int]:
     A face that collapses uses one edge in both directions, so dropping it opens nothing; a face
     without area but with three distinct corners is kept for the same reason.
     """
-    joined, corners = _weld_equal(vertices, faces)
-    still_open = edge_counts(corners).open_edges
+    exact = _weld_equal(vertices, faces)
+    still_open = edge_counts(exact.faces).open_edges
     if still_open:
-        near, kept = _weld_near(joined, corners, _NOISE * float(np.abs(joined).max()))
-        if len(kept) and edge_counts(kept).open_edges < still_open:
-            return near, kept
-    return joined, corners
+        size = float(np.quantile(np.abs(exact.vertices).max(axis=1), _USUAL))
+        near = _weld_near(exact, _NOISE * size)
+        if len(near.kept) and edge_counts(near.faces).open_edges < still_open:
+            return near
+    return exact
 
 
-def _weld_equal(vertices: Float, faces: Int) -> tuple[Float, Int]:
+def _weld_equal(vertices: Float, faces: Int) -> Welded:
     """Vertices (n, 3) and faces (m, 3) with equal positions joined."""
     vertices = vertices + 0.0  # −0.0 and 0.0 are one position
     order = np.lexsort(vertices.T)
@@ -58,16 +79,36 @@ def _weld_equal(vertices: Float, faces: Int) -> tuple[Float, Int]:
     fresh[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
     group = np.empty(len(order), dtype=np.int64)
     group[order] = np.cumsum(fresh) - 1
-    return compact(ordered[fresh], drop_collapsed(group[faces]))
+    return _kept(ordered[fresh], group[faces])
 
 
-def _weld_near(vertices: Float, faces: Int, tolerance: float) -> tuple[Float, Int]:
-    """Vertices (n, 3) and faces (m, 3), vertices within ``tolerance`` joined to the first one."""
-    from scipy.spatial import cKDTree
+def _weld_near(mesh: Welded, tolerance: float) -> Welded:
+    """A mesh with vertices that share a cell joined to the first one, in time linear in them.
 
-    pairs = cKDTree(vertices).query_pairs(tolerance, output_type="ndarray")
-    first = first_connected(pairs[:, 0], pairs[:, 1], len(vertices))
-    return compact(vertices, drop_collapsed(first[faces]))
+    Cells are cubes of twice the tolerance in eight grids, each moved by half a cell along some
+    axes: vertices within the tolerance along each axis share a cell in one of them.
+    """
+    if not tolerance > 0.0:
+        return mesh
+    count = len(mesh.vertices)
+    scaled = mesh.vertices / (2 * tolerance)
+    one, other = [], []
+    for corner in range(8):
+        shift = np.array([corner & 1, corner >> 1 & 1, corner >> 2 & 1]) / 2
+        cells = np.floor(scaled + shift)
+        order = np.lexsort(cells.T)
+        same = np.flatnonzero((cells[order][1:] == cells[order][:-1]).all(axis=1))
+        one.append(order[same])
+        other.append(order[same + 1])
+    first = first_connected(np.concatenate(one), np.concatenate(other), count)
+    near = _kept(mesh.vertices, first[mesh.faces])
+    return Welded(near.vertices, near.faces, mesh.kept[near.kept])
+
+
+def _kept(vertices: Float, faces: Int) -> Welded:
+    """A mesh without faces (m, 3) that use a vertex twice, and without unused vertices (n, 3)."""
+    kept = np.flatnonzero(_distinct(faces))
+    return Welded(*compact(vertices, faces[kept]), kept)
 
 
 def first_connected(one: Int, other: Int, count: int) -> Int:
@@ -91,9 +132,15 @@ def connected(one: Int, other: Int, count: int) -> Int:
 
 def drop_collapsed(faces: Int) -> Int:
     """Faces (m, 3) without those that use a vertex twice."""
-    a, b, c = faces.T
-    kept: Int = faces[(a != b) & (b != c) & (c != a)]
+    kept: Int = faces[_distinct(faces)]
     return kept
+
+
+def _distinct(faces: Int) -> Bool:
+    """(m,) whether the corners of faces (m, 3) are three."""
+    a, b, c = faces.T
+    distinct: Bool = (a != b) & (b != c) & (c != a)
+    return distinct
 
 
 def compact(vertices: Float, faces: Int) -> tuple[Float, Int]:
@@ -127,9 +174,9 @@ def edge_counts(faces: Int) -> EdgeCounts:
         return EdgeCounts(0, 0)
     edges = directed_edges(faces)
     forward = edges[:, 0] < edges[:, 1]
-    _, index, count = np.unique(
-        np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    keys = low * (int(faces.max()) + 1) + high
+    _, index, count = np.unique(keys, return_inverse=True, return_counts=True)
     balance = np.bincount(index.ravel(), weights=np.where(forward, 1.0, -1.0))
     return EdgeCounts(int((balance != 0).sum()), int((count > 2).sum()))
 

@@ -15,6 +15,7 @@ from printprep.output.limits import check_infill_output, check_output
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.mesh.carry import Carried
     from printprep.output.figures import Figures
     from printprep.profiles import Profile
     from printprep.types import Infill, Part, SlicerName
@@ -29,6 +30,7 @@ class Contents:
 
     infill : the slicer's infill inside the part, None for a part with cavities.
     blocker : where a slicer makes no supports, None for anywhere.
+    paint : of the part's faces, in the order of ``quantized_arrays``; None where there is none.
     """
 
     part: Part
@@ -36,6 +38,7 @@ class Contents:
     infill: Infill | None
     figures: Figures
     blocker: Manifold | None = None
+    paint: Carried | None = None
 
 
 def write_part(contents: Contents, path: str | Path, slicer: SlicerName = "prusa") -> None:
@@ -67,12 +70,13 @@ def part_bytes(contents: Contents, suffix: str, slicer: SlicerName = "prusa") ->
     if contents.infill is not None:
         check_infill_output(suffix, slicer)
     if suffix.lower() == ".3mf":
-        return _as_3mf(contents, manifold, plain=slicer != "prusa")
+        return _as_3mf(contents, manifold, slicer)
     return to_bytes(manifold, suffix)
 
 
-def _as_3mf(contents: Contents, manifold: Manifold, *, plain: bool) -> bytes:
+def _as_3mf(contents: Contents, manifold: Manifold, slicer: SlicerName) -> bytes:
     from printprep.mesh.quantize import quantized_arrays
+    from printprep.output.colours import strokes_for
     from printprep.output.item import infill_item, solid_item
     from printprep.output.numbers import to_text
     from printprep.render.thumbnail import thumbnail_png
@@ -81,13 +85,14 @@ def _as_3mf(contents: Contents, manifold: Manifold, *, plain: bool) -> bytes:
 
     name, profile, infill = contents.part.name, contents.profile, contents.infill
     if infill is not None:
-        item = infill_item(manifold, infill.ballast, name, profile)
+        item = infill_item(manifold, infill.ballast, name, profile, contents.paint)
     else:
-        item = solid_item(manifold, name, profile, blocker=contents.blocker)
+        item = solid_item(manifold, name, profile, blocker=contents.blocker, paint=contents.paint)
     return write_3mf(
         [item],
         thumbnail_png=thumbnail_png(*quantized_arrays(manifold), THUMBNAIL_SIZE),
         attachments={JSON_PART: to_text(contents.figures.to_json()).encode("ascii")},
         metadata={"Title": name, "Application": f"printprep {__version__}"},
-        plain=plain,
+        plain=slicer != "prusa",
+        strokes=strokes_for(slicer),
     )

@@ -11,7 +11,10 @@ from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import SILENT, Progress
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from printprep.check.context import CheckContext
+    from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.types import Finding, Lean
 
@@ -48,7 +51,8 @@ def check(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
-    from printprep.check import context_of_solid, run_rules
+    from printprep.check import context_of_solid, run_rules, sorted_findings
+    from printprep.check.reading import reading_findings
     from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
     from printprep.stand.lean import lean_of
@@ -60,6 +64,26 @@ def check(
     solid, part = prepared.solid, prepared.solid.manifold
     with progress.stage("check"):
         part_stability = stability(part, settings.printer.first_layer_mm)
-        context = context_of_solid(part, part_stability, requested, solid.repair, prepared.model)
-        findings = run_rules(context, settings)
+        context = context_of_solid(
+            part, part_stability, requested, solid.repair, prepared.model, _blocker(prepared)
+        )
+        read = reading_findings(prepared.model.notes)
+        findings = sorted_findings([*read, *run_rules(context, settings)])
     return Checked(context, findings, settings)
+
+
+def _blocker(prepared: Prepared) -> Manifold | None:
+    """Where the file tells a slicer to make no supports, on the bed; None where it does not.
+
+    A blocker that is no solid blocks nothing that a slicer could rely on, so it is left out.
+    """
+    from printprep.check.walls import united
+    from printprep.mesh.measure import from_arrays
+
+    to_bed = prepared.solid.placement
+    solids = [
+        from_arrays(vertices @ to_bed[:3, :3].T + to_bed[:3, 3], faces)
+        for vertices, faces in prepared.model.blockers
+    ]
+    sound = [solid for solid in solids if solid.volume() > 0]
+    return united(sound) if sound else None

@@ -45,6 +45,7 @@ def hollow_with(
     UsageError, InputError, GeometryError, ToolError : see :mod:`printprep.errors`.
     """
     from printprep.check import run_rules, sorted_findings
+    from printprep.check.reading import reading_findings
     from printprep.pipeline.alternative_fill import alternative_fill
     from printprep.pipeline.prepare import prepare
     from printprep.pipeline.soundness import check_sound
@@ -69,9 +70,10 @@ def hollow_with(
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
         rule_findings = run_rules(context, filled.profile)
+        read_findings = reading_findings(prepared.model.notes)
     with clock.stage("alternative"):
         alternative = alternative_fill(options.fill, prepared, filled, lean)
-    findings = sorted_findings([*rule_findings, *filled.findings])
+    findings = sorted_findings([*read_findings, *rule_findings, *filled.findings])
     return result_of(prepared, filled, context, findings, alternative, clock.seconds)
 
 
@@ -86,6 +88,9 @@ def hollow(
     height_mm: float | None = None,
     size_mm: float | None = None,
     pose: int | None = None,
+    partial: bool = False,
+    plate: int | None = None,
+    item: str | None = None,
     resolution: int = 64,
     lean: float | str | Lean | None = None,
     objective: str = DEFAULT_OBJECTIVE,
@@ -111,6 +116,8 @@ def hollow(
     units : unit of the file: mm, cm, m, in;  up : axis of the file that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
     pose : K puts the placed model into its K-th steadiest stable pose.
+    partial : take the facets that are there from a file that is cut short.
+    plate : number of the plate of a 3MF project;  item : name or number of one object of a 3MF.
     resolution : voxels along the longest side, for the optimization.
     lean : degrees at which the part must stand, or "15@90" for 15° toward azimuth 90°; None takes
         the profile's.
@@ -141,7 +148,7 @@ def hollow(
     from printprep.profiles import load_profile
 
     settings = load_profile(profile, {**(overrides or {}), **drain_keys(drains, drain_diameter_mm)})
-    placement = Placement(units, up, scale, height_mm, size_mm, pose)
+    placement = Placement(units, up, scale, height_mm, size_mm, pose, partial, plate, item)
     options = FillOptions(
         fill=fill,
         lean=lean,
@@ -247,6 +254,7 @@ def result_of(
     seconds: Mapping[Stage, float],
 ) -> HollowResult:
     """Everything that ``hollow`` returns, as one value."""
+    from printprep.output.colours import carried_paint
     from printprep.result import HollowResult
     from printprep.stand.stability import stability
 
@@ -271,5 +279,6 @@ def result_of(
         drainage=filled.drainage,
         infill=filled.infill,
         alternative_fill=alternative,
+        paint=carried_paint(prepared.model, filled.part, solid.repair),
         seconds={str(stage): value for stage, value in seconds.items()},
     )

@@ -78,6 +78,7 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
         Then nothing is written.
     """
     from printprep.check import at_or_above, sorted_findings
+    from printprep.output.colours import colour_findings
     from printprep.output.limits import format_findings, vault_findings
     from printprep.pipeline.hollow import hollow_with
     from printprep.verify.unwritten import verify_result
@@ -85,7 +86,10 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     profile = check_job(job)
     options = replace(job.options, vaults=_vaults(job, profile))
     result = hollow_with(job.model, profile, job.placement, options, progress)
-    file_findings = [*format_findings(result.profile, job.output, job.written_for)]
+    file_findings = [
+        *format_findings(result.profile, job.output, job.written_for),
+        *colour_findings(result.paint, job.output, job.written_for),
+    ]
     if result.supports is not None:
         file_findings += vault_findings(
             result.supports.rule,

@@ -28,6 +28,9 @@ class Placement:
     up : axis of the file that points up.
     scale, height_mm, size_mm : at most one: a factor, the height, or the longest side.
     pose : K puts the placed model into its K-th steadiest stable pose.
+    partial : take the facets that are there from a file that is cut short.
+    plate : number of the plate of a 3MF project to read.
+    item : name or number of the one object of a 3MF to read.
     """
 
     units: str | None = None
@@ -36,6 +39,9 @@ class Placement:
     height_mm: float | None = None
     size_mm: float | None = None
     pose: int | None = None
+    partial: bool = False
+    plate: int | None = None
+    item: str | None = None
 
 
 AS_IN_FILE = Placement()

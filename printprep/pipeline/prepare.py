@@ -51,6 +51,7 @@ def prepare(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
+    from printprep.mesh.carry import facets_apart
     from printprep.mesh.repair import repair, without_crumb_shells
 
     with progress.stage("read"):
@@ -60,6 +61,8 @@ def prepare(
     with progress.stage("repair"):
         placed, crumbs = without_crumb_shells(placed, profile.crumb_mm3)
         solid = _also(repair(placed, profile.crumb_mm3), crumbs)
+        if placed.paint is not None:
+            solid = replace(solid, manifold=facets_apart(solid.manifold))
         if placement.pose is not None:
             placed, solid = _posed(placed, solid, placement.pose)
     return Prepared(placed, solid, profile)
@@ -83,13 +86,18 @@ def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_
     from printprep.generators.model import read_model
     from printprep.generators.read import SUFFIXES as VOXEL_SUFFIXES
     from printprep.mesh.place import place
-    from printprep.mesh.read import from_trimesh, read_mesh
+    from printprep.mesh.read import Choice, from_trimesh, read_mesh, refuse_parts
 
+    choice = Choice(placement.units, placement.partial, placement.plate, placement.item)
     if isinstance(model, str | Path):
         path = Path(model)
-        voxels = path.suffix.lower() in VOXEL_SUFFIXES
-        raw = read_model(path) if voxels else read_mesh(path, placement.units)
+        if path.suffix.lower() in VOXEL_SUFFIXES:
+            refuse_parts(choice, str(path))
+            raw = read_model(path)
+        else:
+            raw = read_mesh(path, choice=choice)
     else:
+        refuse_parts(choice, "a mesh in memory")
         raw = from_trimesh(model, units=placement.units)
     return place(
         raw,

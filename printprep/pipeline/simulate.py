@@ -46,6 +46,7 @@ def simulate(
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
     from printprep.check import sorted_findings
+    from printprep.check.reading import reading_findings
     from printprep.check.simulated import simulation_findings
     from printprep.pipeline.prepare import prepare
     from printprep.profiles import load_profile
@@ -55,12 +56,15 @@ def simulate(
 
     settings = load_profile(profile, overrides or {})
     requested = lean_of(lean, settings.stability.lean_deg)
-    solid = prepare(model, settings, placement, progress).solid
+    prepared = prepare(model, settings, placement, progress)
+    solid = prepared.solid
     first_layer_mm = settings.printer.first_layer_mm
     with progress.stage("simulate"):
         part_stability = stability(solid.manifold, first_layer_mm)
         simulation = trial(solid.manifold, first_layer_mm, requested)
-    findings = sorted_findings(simulation_findings(simulation, requested))
+    findings = sorted_findings(
+        [*reading_findings(prepared.model.notes), *simulation_findings(simulation, requested)]
+    )
     return Simulated(solid, part_stability, simulation, requested, settings, findings)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from printprep.mesh.carry import facets_apart
 from printprep.mesh.sealed_voids import sealed_voids
 from printprep.mesh.shell_figures import pieces
 from printprep.supports.policy import supported, vault_choice
@@ -36,6 +37,8 @@ def settle_voids(prepared: Prepared, options: FillOptions, progress: Progress) -
     if not found.empty and not found.holding:
         return prepared
     holding = _volumes(found.holding)
+    if prepared.model.paint is not None:
+        found = replace(found, whole=facets_apart(found.whole))
     if options.voids == "fill" or not found.empty:
         voids = ModelVoids(filled_mm3=_volumes(found.empty), holding_mm3=holding)
         return replace(prepared, solid=replace(solid, manifold=found.whole), voids=voids)

@@ -1,7 +1,8 @@
 """Reads parts of an untrusted zip: by name from memory, never extracted, never beyond a size limit.
 
 Part names are compared as OPC asks (case, leading slash and dot segments do not matter) and only
-looked up in the archive's list, so that no name can reach the file system.
+looked up in the archive's list, so that no name can reach the file system.  Two parts whose names
+differ by no more than that are ambiguous: programs would take different ones.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import io
 import lzma
 import posixpath
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -19,10 +21,12 @@ from typing import IO, Self
 from urllib.parse import unquote
 
 from printprep.errors import InputError
+from printprep.input_file import read_plain_file
+from printprep.wording import printable, shortened
 
-# A model part of 1 GiB holds about ten million triangles.  Real meshes deflate by a factor of up to
-# 30; a part that inflates by far more, to a size that matters, is a zip bomb.
-PART_BYTES_MAX = 1 << 30
+# 512 MiB of XML hold five million triangles, as many as are read.  Real meshes deflate by a factor
+# of up to 30; a part that inflates by far more, to a size that matters, is a zip bomb.
+MODEL_BYTES_MAX = 512 << 20
 RATIO_MAX = 150
 RATIO_COUNTS_FROM_BYTES = 64 << 20
 PARTS_MAX = 20_000
@@ -48,18 +52,35 @@ class Archive:
 
     def __init__(self, path: Path) -> None:
         self.name = path.name
+        # Read as a whole: a zip on disk can change while it is read, bytes in memory cannot.
+        content = read_plain_file(path)
         try:
-            # Read as a whole: a zip on disk can change while it is read, bytes in memory cannot.
-            self._zip = zipfile.ZipFile(io.BytesIO(path.read_bytes()))
-        except _DAMAGE as error:
+            self._zip = zipfile.ZipFile(io.BytesIO(content))
+        except (*_DAMAGE, ValueError, struct.error) as error:
             raise InputError(
-                f"{self.name} cannot be opened as a 3MF file: {error}.",
+                f"{self.name} cannot be opened as a 3MF file: {shortened(str(error), 160)}.",
                 "A 3MF is a zip archive: download or export it again.",
             ) from error
-        entries = [entry for entry in self._zip.infolist() if not entry.is_dir()]
+        entries = [
+            entry
+            for entry in self._zip.infolist()
+            if entry.filename and not entry.filename.endswith("/")  # a folder, or no name at all
+        ]
         if len(entries) > PARTS_MAX:
             raise InputError(f"{self.name} holds {len(entries)} parts, too many for a model.")
-        self._entries = {_key(entry.filename): entry for entry in reversed(entries)}
+        self._entries: dict[str, zipfile.ZipInfo] = {}
+        self._ambiguous: dict[str, str] = {}
+        for entry in entries:
+            other = self._entries.setdefault(_key(entry.filename), entry)
+            if other is not entry:
+                self._ambiguous[_key(entry.filename)] = f"{other.filename} and {entry.filename}"
+        models = sum(entry.file_size for key, entry in self._entries.items() if _is_model(key))
+        if models > MODEL_BYTES_MAX:
+            raise InputError(
+                f"{self.name}: its models unpack to {models / 2**20:.0f} MiB; at most "
+                f"{MODEL_BYTES_MAX / 2**20:.0f} MiB are read.",
+                "Reduce the number of triangles in a modelling program.",
+            )
 
     def __enter__(self) -> Self:
         return self
@@ -83,29 +104,48 @@ class Archive:
     def open(self, part: str) -> Iterator[IO[bytes]]:
         """A part as a stream; damage found while it is read is an InputError too."""
         entry = self._entries.get(_key(part))
+        part = printable(part)
         if entry is None:
             raise InputError(f"{self.name}: the part {part} is missing.", _AGAIN)
+        if _key(part) in self._ambiguous:
+            raise InputError(
+                f"{self.name} has two parts of one name, {printable(self._ambiguous[_key(part)])}: "
+                "programs take different ones.",
+                "Export the model again.",
+            )
         size, packed = entry.file_size, max(entry.compress_size, 1)
-        if size > PART_BYTES_MAX or (size > RATIO_COUNTS_FROM_BYTES and size > RATIO_MAX * packed):
+        if size > MODEL_BYTES_MAX or (size > RATIO_COUNTS_FROM_BYTES and size > RATIO_MAX * packed):
             raise InputError(
                 f"{self.name}: the part {part} unpacks to {size / 2**20:.0f} MiB, which is too "
                 "large for a model."
             )
         try:
-            with self._zip.open(entry) as stream:
+            stream = self._zip.open(entry)
+        except (*_DAMAGE, ValueError, struct.error) as error:
+            raise self._damaged(part, error) from error
+        with stream:
+            try:
                 yield stream
-        except _DAMAGE as error:
-            raise InputError(
-                f"{self.name}: the part {part} is damaged: {error}.", _AGAIN
-            ) from error
+            except _DAMAGE as error:
+                raise self._damaged(part, error) from error
+
+    def _damaged(self, part: str, error: Exception) -> InputError:
+        fact = shortened(str(error), 160).rstrip(".") or type(error).__name__
+        return InputError(f"{self.name}: the part {part} is damaged: {fact}.", _AGAIN)
 
     def read(self, part: str, limit_bytes: int = SMALL_PART_BYTES_MAX) -> bytes:
         """The content of a part; InputError where it is larger than `limit_bytes`."""
         with self.open(part) as stream:
             content = stream.read(limit_bytes + 1)
         if len(content) > limit_bytes:
-            raise InputError(f"{self.name}: the part {part} is larger than {limit_bytes} bytes.")
+            raise InputError(
+                f"{self.name}: the part {printable(part)} is larger than {limit_bytes} bytes."
+            )
         return content
+
+
+def _is_model(key: str) -> bool:
+    return key.endswith(".model")
 
 
 def _key(part: str) -> str:

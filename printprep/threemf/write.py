@@ -14,21 +14,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from printprep.errors import UsageError
+from printprep.threemf.item import Item, Volume, VolumeKind
 from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
+from printprep.threemf.painting import (
+    PRUSA_STROKES,
+    Painter,
+    material_lines,
+    materials_of,
+    painting_versions,
+)
 from printprep.threemf.xml_text import clean, escape, triangle_lines, vertex_lines
 
 if TYPE_CHECKING:
-    from printprep.arrays import Float, Int
+    pass
 
-VolumeKind = Literal[
-    "ModelPart", "NegativeVolume", "ParameterModifier", "SupportBlocker", "SupportEnforcer"
-]
+__all__ = ["Item", "Volume", "VolumeKind", "write_3mf"]
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _SLIC3R = "http://schemas.slic3r.org/3mf/2017/06"
@@ -46,34 +51,6 @@ _METADATA = (
 _ATTACHMENT = re.compile(r"Metadata/[A-Za-z0-9_-]+\.(json|txt)")
 
 
-@dataclass(frozen=True, eq=False)
-class Volume:
-    """A closed mesh and its purpose.
-
-    vertices : (n, 3) mm;  faces : (m, 3) indices into them, counter-clockwise seen from outside;
-    settings : slicer keys of this volume only (useful on a ParameterModifier).
-    """
-
-    name: str
-    vertices: Float
-    faces: Int
-    kind: VolumeKind = "ModelPart"
-    settings: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, eq=False)
-class Item:
-    """One object on the bed z = 0; the slicer does not move it.
-
-    settings : slicer keys of the object;  translation_mm : place of its origin, (x, y, z).
-    """
-
-    name: str
-    volumes: Sequence[Volume]
-    settings: Mapping[str, str] = field(default_factory=dict)
-    translation_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-
 def write_3mf(
     items: Sequence[Item],
     *,
@@ -81,12 +58,14 @@ def write_3mf(
     attachments: Mapping[str, bytes] | None = None,
     metadata: Mapping[str, str] | None = None,
     plain: bool = False,
+    strokes: Mapping[str, str] = PRUSA_STROKES,
 ) -> bytes:
     """The 3MF file as bytes; the same arguments give the same bytes.
 
     attachments : part name ("Metadata/printprep.json") → content, JSON or text;
     metadata : name from the core specification ("Title", "Application", …) → text;
-    plain : leave out PrusaSlicer's config, and with it all settings.
+    plain : leave out PrusaSlicer's config, and with it all settings;
+    strokes : the attribute of a triangle for each kind of paint, none for a kind that is left out.
 
     Raises UsageError for a setting that no file for a slicer may carry, ValueError for geometry or
     a part that would make the file invalid.
@@ -95,7 +74,7 @@ def write_3mf(
         raise ValueError("a 3MF needs at least one item")
     for item in items:
         _check(item)
-    parts = {MODEL_PART: _model(items, metadata or {})}
+    parts = {MODEL_PART: _model(items, metadata or {}, strokes)}
     if not plain:
         parts[CONFIG_PART] = _config(items)
     if thumbnail_png is not None:
@@ -129,6 +108,8 @@ def _check(item: Item) -> None:
             raise ValueError(f"volume {volume.name!r} has an index beyond its vertices")
         if (faces == np.roll(faces, 1, axis=1)).any():
             raise ValueError(f"volume {volume.name!r} has a triangle that names a vertex twice")
+        if volume.paint is not None and volume.paint.labels.shape != (len(faces),):
+            raise ValueError(f"volume {volume.name!r} has paint for another number of triangles")
         _check_settings(volume.name, volume.settings)
 
 
@@ -146,7 +127,7 @@ def _check_settings(owner: str, settings: Mapping[str, str]) -> None:
             raise UsageError(f"{owner!r}: {key} has characters that a 3MF cannot hold.")
 
 
-def _model(items: Sequence[Item], metadata: Mapping[str, str]) -> bytes:
+def _model(items: Sequence[Item], metadata: Mapping[str, str], strokes: Mapping[str, str]) -> bytes:
     unknown = sorted(set(metadata) - set(_METADATA))
     if unknown:
         raise ValueError(f"no such 3MF metadata: {', '.join(unknown)}")
@@ -159,9 +140,13 @@ def _model(items: Sequence[Item], metadata: Mapping[str, str]) -> bytes:
         f' <metadata name="{name}">{escape(metadata[name])}</metadata>\n'.encode()
         for name in sorted(metadata)
     ]
+    chunks += painting_versions(items, strokes)
     chunks.append(b" <resources>\n")
+    materials = materials_of(items)
+    group = len(items) + 1
+    chunks += material_lines(materials, group)
     for number, item in enumerate(items, 1):
-        chunks += _object(number, item)
+        chunks += _object(number, item, Painter(materials, group, strokes))
     chunks.append(b" </resources>\n <build>\n")
     for number, item in enumerate(items, 1):
         x, y, z = (f"{float(value):.9g}" for value in item.translation_mm)
@@ -171,14 +156,15 @@ def _model(items: Sequence[Item], metadata: Mapping[str, str]) -> bytes:
     return b"".join(chunks)
 
 
-def _object(number: int, item: Item) -> list[bytes]:
-    head = f'  <object id="{number}" type="model" name="{escape(item.name)}">\n   <mesh>\n'
+def _object(number: int, item: Item, painter: Painter) -> list[bytes]:
+    default = painter.default(item)
+    head = f'  <object id="{number}" type="model" name="{escape(item.name)}"{default}>\n   <mesh>\n'
     chunks = [head.encode(), b"    <vertices>\n"]
     chunks += [vertex_lines(volume.vertices) for volume in item.volumes]
     chunks.append(b"    </vertices>\n    <triangles>\n")
     first = 0
     for volume in item.volumes:
-        chunks.append(triangle_lines(volume.faces, first))
+        chunks.append(triangle_lines(volume.faces, first, painter.attributes(volume)))
         first += len(volume.vertices)
     chunks.append(b"    </triangles>\n   </mesh>\n  </object>\n")
     return chunks

@@ -6,6 +6,7 @@ Source: XML 1.0 (fifth edition) sections 2.2 and 3.3.3; 3MF core specification 1
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,7 +41,18 @@ def vertex_lines(vertices_mm: Float) -> bytes:
     return b'     <vertex x="%b" y="%b" z="%b"/>\n' * len(vertices_mm) % tuple(texts)
 
 
-def triangle_lines(faces: Int, first_vertex: int) -> bytes:
-    """One <triangle/> a line for faces (m, 3), with `first_vertex` added to each index."""
+def triangle_lines(
+    faces: Int, first_vertex: int, attributes: Sequence[bytes] | None = None
+) -> bytes:
+    """One <triangle/> a line for faces (m, 3), with `first_vertex` added to each index.
+
+    attributes : what stands in each element after its corners, None for nothing in any.
+    """
+    if attributes is not None:
+        rows = (faces + first_vertex).tolist()
+        return b"".join(
+            b'     <triangle v1="%d" v2="%d" v3="%d"%b/>\n' % (*row, more)
+            for row, more in zip(rows, attributes, strict=True)
+        )
     indices = tuple((faces + first_vertex).ravel().tolist())
     return b'     <triangle v1="%d" v2="%d" v3="%d"/>\n' * len(faces) % indices

@@ -106,7 +106,7 @@ def _figures(path: Path, attachments: Mapping[str, bytes]) -> tuple[Figures, Pro
     try:
         figures = Figures.from_json(attachments[ATTACHMENT])
         profile = Profile.model_validate({**figures.settings, "name": figures.profile})
-    except ValueError as error:  # pydantic's errors are among them
+    except (ValueError, RecursionError) as error:  # pydantic's errors are among them
         first = str(error).splitlines()[0]
         raise InputError(
             f"{path.name}: this version of printprep cannot read its figures: {first}.", _HOLLOW_IT

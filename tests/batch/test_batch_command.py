@@ -92,6 +92,39 @@ def test_a_table_that_is_no_text_is_an_input_error(tmp_path):
         items_in(path, GIVEN, tmp_path, ".3mf", "none")
 
 
+def test_names_that_no_file_has_are_told_by_their_line(tmp_path):
+    path = tmp_path / "orders.csv"
+    path.write_bytes(b"file\na\0b\0c.stl\n")
+    with pytest.raises(InputError, match="line 2: a cell holds a zero character"):
+        items_in(path, GIVEN, tmp_path, ".3mf", "none")
+    path.write_text(f"file\n{'n' * 5000}.stl\n")
+    with pytest.raises(UsageError, match="does not exist") as caught:
+        items_in(path, GIVEN, tmp_path, ".3mf", "none")
+    assert len(caught.value.message) < 600
+    path.write_text('file,"si\nze"\na.stl,5\n')
+    with pytest.raises(UsageError, match="si ze is not an option"):
+        items_in(path, GIVEN, tmp_path, ".3mf", "none")
+    device = tmp_path / "zero.csv"
+    device.symlink_to("/dev/zero")
+    with pytest.raises(InputError, match="is not a plain file"):
+        items_in(device, GIVEN, tmp_path, ".3mf", "none")
+
+
+def test_a_table_names_plate_and_object_of_each_model(tmp_path):
+    from manifold3d import Manifold
+
+    from printprep.mesh.measure import arrays
+    from printprep.threemf.write import Item, Volume, write_3mf
+
+    cube = Volume("v", *arrays(Manifold.cube((9, 9, 9))))
+    (tmp_path / "two.3mf").write_bytes(write_3mf([Item("a", [cube]), Item("b", [cube])]))
+    path = tmp_path / "orders.csv"
+    path.write_text("file,object,plate,partial\ntwo.3mf,b,,yes\n")
+    (item,) = items_in(path, GIVEN, tmp_path, ".3mf", "none")
+    placement = item.job.placement
+    assert (placement.item, placement.plate, placement.partial) == ("b", None, True)
+
+
 def test_the_command_from_folder_and_table_to_summary(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     models(tmp_path, "in/a.stl", "orders/b.stl")

@@ -169,7 +169,7 @@ STL = to_bytes(from_arrays(*BOX), ".stl")
     [
         ("a.stl", b"", "0 bytes"),
         ("a.obj", b"", "0 bytes"),
-        ("a.stl", STL[:-1], "promises 12 triangles"),
+        ("a.stl", STL[:-1], "cut short: it holds 11 whole facets, its header names 12"),
         ("a.stl", STL[:300], "cut short"),
         ("a.stl", b"\0" * 40, "cut short"),
         ("a.stl", STL[:80] + bytes(4), "no triangles"),

@@ -63,7 +63,7 @@ def test_a_size_that_can_be_scaled_away_is(side: float) -> None:
     try:
         result = hollow(mesh, size_mm=10, resolution=8, base="never")
     except GeometryError as refused:  # a subnormal number has no factor
-        assert side < 1e-300 and "factor" in refused.message
+        assert side < 1e-300 and "too small" in refused.message
     else:
         assert result.part.manifold.volume() <= 1000 + 1e-3
 
