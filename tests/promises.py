@@ -38,7 +38,7 @@ class Judged:
     """What a part is judged by.
 
     outside : the model with its empty voids filled, on the plate;  written : the part's triangles,
-    as lib3mf reads them.
+    as trimesh reads them.
     """
 
     result: HollowResult
@@ -60,7 +60,12 @@ def broken_promises(result: HollowResult, outside: Manifold, *, again: bytes | N
         result.write(path)
         if again is not None and path.read_bytes() != again:
             return ["7: a second run writes other bytes"]
-        written, warnings = judges.read_strictly(path)
+        _, warnings = judges.read_strictly(path)
+        # In a 3MF a support blocker lies in the same mesh as the part.
+        alone = Path(folder) / "part.stl"
+        result.write(alone, without_blocker=True)
+        mesh = trimesh.load_mesh(alone)
+        written = judges.Mesh(np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64))
         broken = [f"2: lib3mf warns: {text}" for text in warnings]
         checked = check(path, profile=result.profile, lean=result.lean)
     said = {(item.rule, item.severity) for item in result.findings}
