@@ -192,6 +192,14 @@ class Profile(_Frozen):
         return PROCESSES[self.process]
 
     @property
+    def crumb_mm3(self) -> float:
+        """Volume below which a body or a void is a crumb that no printer makes.
+
+        It is the least feature in one layer: a dot of min_feature_mm.
+        """
+        return self.min_feature_mm**2 * self.printer.layer_height_mm
+
+    @property
     def overhang_share(self) -> float:
         """How far a line may stand out over the one below in a cavity, as a share of its width."""
         return OVERHANG_SHARE if self.overhang is None else self.overhang.share

@@ -118,7 +118,7 @@ class HollowResult:
     @property
     def base_mass_g(self) -> float:
         """Mass in g that the base adds to the model, 0 without a base."""
-        added_mm3 = float(self.part.outside.volume() - self.solid.manifold.volume())
+        added_mm3 = float(self.part.outside.volume() - self.solid.whole.volume())
         return added_mm3 * float(self.profile.material.density_g_cm3) / 1000
 
     @property

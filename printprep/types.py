@@ -131,12 +131,37 @@ class Solid:
     """A valid manifold of positive volume, on the bed, in mm; shells inside it are real voids.
 
     placement : (4, 4) float64, file coordinates → these coordinates.
+    kept : voids of the model that stay as cavities, with their vaults, as positive solids;
+    filled : the solid with these voids filled, None where there are none.
     """
 
     manifold: Manifold
     name: str
     repair: Repair
     placement: Float
+    kept: tuple[Manifold, ...] = ()
+    filled: Manifold | None = None
+
+    @property
+    def whole(self) -> Manifold:
+        """The solid with all its voids filled but those that hold a body of their own."""
+        return self.manifold if self.filled is None else self.filled
+
+
+@dataclass(frozen=True)
+class ModelVoids:
+    """What became of the sealed voids that the model brought; volumes in mm³, largest first.
+
+    filled : voids that were filled;  kept : empty voids that stay, on request;
+    holding : voids that stay because a body of their own is in them.
+    """
+
+    filled_mm3: tuple[float, ...] = ()
+    kept_mm3: tuple[float, ...] = ()
+    holding_mm3: tuple[float, ...] = ()
+
+
+NO_VOIDS = ModelVoids()
 
 
 @dataclass(frozen=True)
@@ -280,9 +305,10 @@ class Part:
     """What is printed.
 
     manifold : the whole part, cavities as inverted shells.
-    outside : the model with its base, and with the voids that the model already had.
-    cavities : positive solids that were cut out.
+    outside : the model with its base, and with those of its voids that hold a body.
+    cavities : positive solids that are empty in it: those that were cut, and ``kept``.
     placement : (4, 4) float64, file coordinates → these coordinates.
+    kept : the voids of the model that stay.
     """
 
     manifold: Manifold
@@ -291,6 +317,7 @@ class Part:
     base: Base | None
     name: str
     placement: Float
+    kept: tuple[Manifold, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,6 +40,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
         "printprep.arrays",
         "printprep.children",
         "printprep.errors",
+        "printprep.machine_memory",
         "printprep.process",
         "printprep.processors",
         "printprep.progress",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+from printprep.machine_memory import available_mib
 
 if TYPE_CHECKING:
     from printprep.pipeline.job import Job
@@ -36,19 +36,5 @@ def estimated_mib(job: Job) -> float:
 
 def machine_mib() -> float:
     """Memory that a batch may take of this machine, MiB: most of what is free now."""
-    free = _available_mib()
+    free = available_mib()
     return (1 - SPARE_SHARE) * free if free is not None else 4096.0
-
-
-def _available_mib() -> float | None:
-    try:
-        with Path("/proc/meminfo").open(encoding="ascii") as lines:
-            for line in lines:
-                if line.startswith("MemAvailable:"):
-                    return int(line.split()[1]) / 1024
-    except (OSError, ValueError):
-        pass
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / (1 << 20)
-    except (AttributeError, ValueError, OSError):
-        return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -9,8 +10,9 @@ import numpy as np
 
 from printprep.grid.balls import deepest_points
 from printprep.grid.distance import Surface
-from printprep.mesh.measure import bodies
 from printprep.mesh.quantize import quantized
+from printprep.mesh.sealed_voids import sealed_voids
+from printprep.mesh.shell_figures import pieces, without_crumbs
 from printprep.types import Base, Part, Plane, Solid
 
 if TYPE_CHECKING:
@@ -36,29 +38,52 @@ def cut(
 
     if len(parts) == 1:
         return _above(hollowable_volume, planes[0])
-    pieces = [
+    cuts = [
         _above(hollowable_volume ^ body, plane) for body, plane in zip(parts, planes, strict=True)
     ]
-    return Manifold.batch_boolean(pieces, OpType.Add)
+    return Manifold.batch_boolean(cuts, OpType.Add)
 
 
 def cavities_of(cavity: Manifold, min_feature_mm: float) -> tuple[Manifold, ...]:
-    """Pieces of a cavity that can hold a ball of the minimum feature, largest first."""
-    pieces = [piece for piece in bodies(cavity) if _holds_ball(piece, min_feature_mm / 2)]
-    return tuple(sorted(pieces, key=lambda piece: (-piece.volume(), piece.bounding_box())))
+    """Pieces of a cavity that can hold a ball of the minimum feature, largest first.
+
+    Material that floats in a piece is left out of the part: nothing would hold it.
+    """
+    large = pieces(cavity, ball_mm3(min_feature_mm))
+    roomy = [piece for piece in large if _holds_ball(piece, min_feature_mm / 2)]
+    return tuple(sorted(roomy, key=lambda piece: (-piece.volume(), piece.bounding_box())))
 
 
-def make_part(solid: Solid, base: Base | None, cavities: Sequence[Manifold]) -> Part:
+def ball_mm3(diameter_mm: float) -> float:
+    """The volume of a ball."""
+    return math.pi / 6 * diameter_mm**3
+
+
+def make_part(
+    solid: Solid, base: Base | None, cavities: Sequence[Manifold], crumb_mm3: float = 0.0
+) -> Part:
     """Unite the solid with its base and subtract the cavities.
 
-    The part's coordinates are rounded as in a written file.
+    The part's coordinates are rounded as in a written file.  The voids of the model that stay are
+    cavities like those that are cut.
     """
     from manifold3d import Manifold, OpType
 
-    outside = solid.manifold if base is None else solid.manifold + base.manifold
-    whole = Manifold.batch_boolean([outside, *cavities], OpType.Subtract)
-    part = quantized(whole)
-    return Part(part, outside, tuple(cavities), base, solid.name, solid.placement)
+    outside = solid.whole if base is None else _on_base(solid.whole, base.manifold)
+    voids = (*cavities, *solid.kept)
+    whole = Manifold.batch_boolean([outside, *voids], OpType.Subtract)
+    part = finished(whole, crumb_mm3)
+    return Part(part, outside, voids, base, solid.name, solid.placement, solid.kept)
+
+
+def _on_base(solid: Manifold, base: Manifold) -> Manifold:
+    """The solid with its base; what the base closes off from the air is filled."""
+    return sealed_voids(solid + base).whole
+
+
+def finished(whole: Manifold, crumb_mm3: float) -> Manifold:
+    """A part as it will be written: without the crumbs of its booleans, rounded to float32."""
+    return quantized(without_crumbs(whole, crumb_mm3)[0])
 
 
 def _above(hollowable_volume: Manifold, plane: Plane | None) -> Manifold:

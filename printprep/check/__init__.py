@@ -15,6 +15,7 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     lean_out_of_reach,
     min_feature,
     no_contact,
+    no_vent,
     non_manifold_edges,
     nothing_to_hollow,
     open_surface,
@@ -30,6 +31,8 @@ from printprep.check import (  # noqa: F401  (imported to register their rules)
     tiny_model,
     trapped_volume,
     unsupported_ceiling,
+    void_filled,
+    void_kept,
     wall_thickness,
     watertight,
 )

@@ -66,9 +66,13 @@ _KINDS = (
     Kind("drain-filled", "mm3", _INFO, "a cavity left solid for no visible reason"),
     Kind("drain-too-small", "mm", _ERROR, "a drain hole too narrow to drain anything"),
     Kind("nothing-to-hollow", None, _INFO, "a part left solid for no visible reason"),
+    Kind("no-vent", "mm3", _INFO, "resin that runs out slowly, or not at all"),
     Kind("sealed-cavity", "mm3", ("info", "error"), "resin or powder that can never get out"),
     Kind("suction-cup", "mm2", _WARNING, "layers that a vacuum tears as they leave the film"),
     Kind("trapped-volume", "mm3", ("info", "warning"), "resin that leaks, or cures inside"),
+    # the voids of the model
+    Kind("void-filled", "mm3", _INFO, "surprise at a void that is gone"),
+    Kind("void-kept", "mm3", _INFO, "surprise at a void that was not filled"),
     # standing
     Kind("contact-area", "mm2", _WARNING, "a tall print that comes loose from the bed"),
     Kind("lean-out-of-reach", "deg", _ERROR, "more ballast where only feet or pose help"),

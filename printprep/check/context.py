@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from printprep.check.walls import Wall, united, wall_min_mm
+from printprep.check.walls import Enclosed, Wall, united, wall_min_mm
 from printprep.mesh.measure import innermost, shells
-from printprep.types import Advice, Drainage, Lean, Model, Repair, Stability
+from printprep.types import NO_VOIDS, Advice, Drainage, Lean, Model, ModelVoids, Repair, Stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from manifold3d import Manifold
 
-    from printprep.drainage.trapped import Cup, Pocket
+    from printprep.drainage.trapped import Chamber, Cup, Pocket
     from printprep.mesh.self_intersections import SelfIntersections
     from printprep.thickness import Thin
 
@@ -27,9 +27,8 @@ class CheckContext:
     """The part to check, on the bed, z up, in mm.
 
     part : the whole part as it is or will be written (float32 coordinates, ``quantized``).
-    outside : the surface that walls are measured to: for a part that printprep made, the model with
-    its base and the voids it already had; for a file, its outer shells.
-    cavities : positive solids, disjoint from the material.
+    outside : what the outermost shells enclose.
+    cavities : positive solids that are sealed, disjoint from the material.
     stability : how the part stands;  lean : the lean at which it should stand.
     repair : how the file was made into a solid.
     hollowed : True for a part that printprep made, False for a file as it came.
@@ -38,7 +37,11 @@ class CheckContext:
     advice : what would make the lean feasible; it comes with ``reachable_deg``.
     drainage : how the part drains, None where no drains were requested.
     blocker : where the file forbids a slicer's supports, None if it does not.
-    raw : the triangles of a file as read and placed; None for a part that printprep made.
+    raw : the triangles of the file, as read and placed or as they will be written.
+    voids : what became of the voids that the model brought.
+    drained : cavities that printprep made and that drain holes open.
+    walls : solids with cavities, between which the wall is measured; none for ``outside`` with
+    ``cavities``.
 
     What several rules need is measured once.
     """
@@ -56,6 +59,9 @@ class CheckContext:
     drainage: Drainage | None = None
     blocker: Manifold | None = None
     raw: Model | None = None
+    voids: ModelVoids = NO_VOIDS
+    drained: tuple[Manifold, ...] = ()
+    walls: tuple[Enclosed, ...] = ()
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
@@ -66,7 +72,8 @@ class CheckContext:
     @cached_property
     def wall(self) -> Wall | None:
         """The thinnest wall between cavities and outside, None without a cavity."""
-        return wall_min_mm(self)
+        found = [wall_min_mm(pair) for pair in self.walls or (self,)]
+        return min((wall for wall in found if wall is not None), default=None)
 
     @cached_property
     def self_intersections(self) -> SelfIntersections | None:
@@ -94,6 +101,12 @@ class CheckContext:
 
         return self._kept("pockets", diameter_mm, lambda: trapped(self.part, diameter_mm))
 
+    def chambers(self, diameter_mm: float) -> tuple[Chamber, ...]:
+        """The enclosed spaces with ways out, on the grid for holes of this diameter."""
+        from printprep.drainage.trapped import chambers
+
+        return self._kept("chambers", diameter_mm, lambda: chambers(self.part, diameter_mm))
+
     @cached_property
     def cups(self) -> tuple[Cup, ...]:
         """The suction cups that form while the part prints."""
@@ -113,6 +126,24 @@ class CheckContext:
         return {}
 
 
+def separated(part: Manifold) -> tuple[Manifold, tuple[Manifold, ...]]:
+    """The solid inside a part's outermost shells, and its sealed cavities.
+
+    A loose body inside a cavity belongs to neither; its volume is subtracted from the cavity.
+    """
+    solids, voids = shells(part)
+    if not voids:
+        return part, ()
+    outer, rest = [], list(voids)
+    for solid in solids:
+        around = innermost(solid, voids)
+        if around is None:
+            outer.append(solid)
+        else:
+            rest[around] = rest[around] - solid
+    return united(outer), tuple(rest)
+
+
 def context_of_solid(
     part: Manifold,
     stability: Stability,
@@ -121,22 +152,12 @@ def context_of_solid(
     raw: Model | None = None,
     blocker: Manifold | None = None,
 ) -> CheckContext:
-    """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside.
-
-    A loose piece inside a cavity belongs to neither; its volume is subtracted from the cavity.
-    """
-    solids, voids = shells(part)
-    outer, rest = [], list(voids)
-    for solid in solids:
-        around = innermost(solid, voids)
-        if around is None:
-            outer.append(solid)
-        else:
-            rest[around] = rest[around] - solid
+    """Any solid, ready to check: shells of negative volume bound cavities, the rest is outside."""
+    outside, cavities = separated(part)
     return CheckContext(
         part=part,
-        outside=united(outer),
-        cavities=tuple(rest),
+        outside=outside,
+        cavities=cavities,
         stability=stability,
         lean=lean,
         repair=repair,

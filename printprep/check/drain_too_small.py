@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
 
+# A way out is measured to 0.05 mm: this share of a hole of 2.5 mm.
+MEASURED = 0.02
+
 
 @rule("drain-too-small")
 def drain_too_small(context: CheckContext, profile: Profile) -> Iterator[Finding]:
@@ -23,7 +26,11 @@ def drain_too_small(context: CheckContext, profile: Profile) -> Iterator[Finding
     diameter = profile.drain.diameter_mm
     if not profile.traits.must_drain or diameter is None:
         return
-    narrow = [pocket for pocket in context.pockets(diameter) if pocket.kind == "narrow"]
+    narrow = [
+        pocket
+        for pocket in context.pockets(diameter)
+        if pocket.kind == "narrow" and (pocket.way_out_mm or 0.0) < (1 - MEASURED) * diameter
+    ]
     if not narrow:
         return
     total = sum(pocket.volume_mm3 for pocket in narrow)

@@ -5,17 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.check.wall_thickness import FACETED
+from printprep.mesh.weld import connected
 from printprep.types import Finding
 
 if TYPE_CHECKING:
     from printprep.check.context import CheckContext
     from printprep.profiles import Profile
+    from printprep.thickness import Thin
 
 # Less surface than this is a tip, which is meant to be thin.
 LEAST_MM2 = 5.0
+# Thin places in cubes of this size that touch belong to one pin.
+LINK_MM = 2.0
+# Material thinner than this is a sliver between surfaces that nearly coincide: nothing prints it.
+SLIVER_MM = 0.02
 
 
 @rule("min-feature")
@@ -26,17 +34,34 @@ def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """
     limit = FACETED * profile.min_feature_mm
     thin = context.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
-    rods = thin.only((thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm))
-    if rods.total_mm2 < LEAST_MM2:
+    slender = (thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm)
+    rods = thin.only(slender & (thin.thick_mm >= SLIVER_MM))
+    pins = [pin for pin in _gathered(rods) if pin.total_mm2 >= LEAST_MM2]
+    if not pins:
         return
-    least, place = rods.thinnest
+    least, place = min(pin.thinnest for pin in pins)
+    total_mm2 = sum(pin.total_mm2 for pin in pins)
     yield finding(
         "min-feature",
         f"A pin or rod is {least:.2f} mm thick; it should be {profile.min_feature_mm:g} mm "
-        f"({rods.total_mm2:.0f} mm² of surface).",
+        f"({total_mm2:.0f} mm² of surface).",
         "Make it thicker, or scale the model up (--size).",
         value=least,
         limit=profile.min_feature_mm,
         at_mm=place,
-        area_mm2=rods.total_mm2,
+        area_mm2=total_mm2,
     )
+
+
+def _gathered(places: Thin) -> list[Thin]:
+    """The places in groups that are apart from each other: each is one pin, or one sliver."""
+    from scipy.spatial import cKDTree
+
+    if not len(places):
+        return []
+    cubes, index = np.unique(
+        np.floor(places.middle / LINK_MM).astype(np.int64), axis=0, return_inverse=True
+    )
+    pairs = cKDTree(cubes).query_pairs(1.8, output_type="ndarray")  # √3: cubes that share a corner
+    group = connected(pairs[:, 0], pairs[:, 1], len(cubes))[np.ravel(index)]
+    return [places.only(group == number) for number in np.unique(group)]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @rule("nothing-to-hollow")
 def nothing_to_hollow(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Explains why a part has no cavity."""
-    if not context.hollowed or context.infilled or context.cavities:
+    if not context.hollowed or context.infilled or context.cavities or context.drained:
         return
     yield finding(
         "nothing-to-hollow",

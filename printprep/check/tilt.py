@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 def tilt(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     """Prevents a part that falls over on the shelf, or on the bed while it prints.
 
-    It is silent where another rule names the cause: no contact, or a lean that is out of reach.
+    It is silent where there is no contact: another rule tells that.
     """
     del profile
     tilt_deg = tilt_toward(context.stability, context.lean)
-    if tilt_deg is None or context.reachable_deg is not None or tilt_deg >= context.lean.angle_deg:
+    if tilt_deg is None or tilt_deg >= context.lean.angle_deg:
         return
     if tilt_deg < 0:
         message = f"The part tips over by itself (tilt angle {tilt_deg:.1f}°)"

@@ -25,7 +25,7 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
     layer; elsewhere the slicer's own rule for supports.  A single island is enough, since it prints
     in mid-air.
     """
-    if not profile.traits.ceilings_sag or not context.cavities:
+    if not profile.traits.ceilings_sag or not (context.cavities or context.drained):
         return
     from printprep.check.walls import united
     from printprep.overhang.limits import acceptance
@@ -33,7 +33,7 @@ def unsupported_ceiling(context: CheckContext, profile: Profile) -> Iterator[Fin
 
     blocked = context.blocker is not None
     accepted = acceptance(profile, "printer" if blocked else "slicer")
-    ceilings = unsupported_ceilings(united(context.cavities), accepted)
+    ceilings = unsupported_ceilings(united((*context.cavities, *context.drained)), accepted)
     worst = ceilings.worst
     if worst is None or (ceilings.area_mm2 <= AREA_MM2 and not ceilings.islands):
         return

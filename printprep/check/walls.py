@@ -25,6 +25,13 @@ class Walled(Protocol):
     def cavities(self) -> Sequence[Manifold]: ...
 
 
+class Enclosed(NamedTuple):
+    """A solid, and cavities in it."""
+
+    outside: Manifold
+    cavities: tuple[Manifold, ...]
+
+
 class Wall(NamedTuple):
     """The thinnest wall: its thickness, and a point (x, y, z) near its middle."""
 

@@ -38,7 +38,7 @@ def watertight(context: CheckContext, profile: Profile) -> Iterator[Finding]:
         return
     vertices, faces = quantized_arrays(context.part)
     crowded = crowded_edges(faces)
-    if len(crowded) and context.raw is None:
+    if len(crowded) and (context.hollowed or context.raw is None):
         yield finding(
             "watertight",
             f"{len(crowded)} edges are not shared by exactly two triangles with the same "

@@ -9,6 +9,7 @@ import click
 
 from printprep.cli.options import (
     exit_code,
+    max_memory_option,
     model_argument,
     output_form_options,
     overrides,
@@ -29,6 +30,7 @@ Examples:
 @model_argument
 @profile_options
 @placement_options
+@max_memory_option
 @output_form_options("error")
 def command(
     model: Path,
@@ -36,6 +38,7 @@ def command(
     settings: tuple[str, ...],
     wall_mm: float | None,
     lean: str | None,
+    max_memory_mib: float | None,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -60,6 +63,7 @@ def command(
         overrides=overrides(settings, wall_mm),
         placement=placement_of(placement),
         lean=lean,
+        max_memory_mib=max_memory_mib,
         progress=for_terminal(quiet=quiet),
     )
     if as_json:

@@ -109,6 +109,31 @@ def base_option(command: Command) -> Command:
     )(command)
 
 
+def max_memory_option(command: Command) -> Command:
+    """How much memory a run may take."""
+    return click.option(
+        "--max-memory",
+        "max_memory_mib",
+        type=click.FloatRange(min=0, min_open=True),
+        metavar="MIB",
+        help="Refuse a model that would take more memory than this, by an estimate made once it is "
+        "read. Default: what the machine has free.",
+    )(command)
+
+
+def voids_option(command: Command) -> Command:
+    """What becomes of the model's own sealed voids."""
+    return click.option(
+        "--voids",
+        type=click.Choice(("fill", "keep")),
+        default="fill",
+        show_default=True,
+        help="What becomes of sealed voids that the model brings. fill: they are filled before "
+        "anything is hollowed, but for those that hold a body of their own (a rattle). keep: all "
+        "of them stay, with vaults and drain holes where the process needs them.",
+    )(command)
+
+
 def vaults_option(command: Command) -> Command:
     """Which vaults carry the ceilings of cavities."""
     return together(

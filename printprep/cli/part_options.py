@@ -11,6 +11,7 @@ from printprep.cli.drains import drain_options
 from printprep.cli.options import (
     Command,
     base_option,
+    max_memory_option,
     overrides,
     placement_of,
     placement_options,
@@ -20,6 +21,7 @@ from printprep.cli.options import (
     slicer_option,
     together,
     vaults_option,
+    voids_option,
 )
 from printprep.objectives import DEFAULT_OBJECTIVE, OBJECTIVES, Solver
 from printprep.output.manual_settings import SLICERS
@@ -82,6 +84,7 @@ def part_options(command: Command) -> Command:
             help="Device for --solver adam: cpu, cuda or cuda:N.",
         ),
         base_option,
+        voids_option,
         click.option(
             "--simulate",
             is_flag=True,
@@ -124,6 +127,7 @@ def part_options(command: Command) -> Command:
             "PrusaSlicer that weighs prints with infill. Default: PRINTPREP_SLICER, or the one "
             "installed; without one the weight is estimated."
         ),
+        max_memory_option,
     )(command)
 
 
@@ -152,8 +156,10 @@ def job_of(
             objective=given["objective"],
             solver=Solver(given["solver_name"], given["device"]),
             base=given["base"],
+            voids=given["voids"],
             vaults=given["vaults"],
             slicer=given["slicer"],
+            max_memory_mib=given["max_memory_mib"],
         ),
         written_for=given["written_for"],
         plugs=plugs,

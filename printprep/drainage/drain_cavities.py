@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from printprep.cavity.carve import cavities_of
+from printprep.cavity.carve import ball_mm3, cavities_of
 from printprep.drainage.channel import Channel, bored
 from printprep.drainage.driller import Driller, Hole
 from printprep.drainage.voxelized_part import VoxelizedPart, voxelize, with_cavities
@@ -46,7 +46,9 @@ def drain_cavities(
     count_of: Callable[[float], int],
     wall_mm: float,
     min_feature_mm: float,
+    crumb_mm3: float = 0.0,
     known: Sequence[Hole] = (),
+    kept: Sequence[Manifold] = (),
     voxelized: VoxelizedPart | None = None,
 ) -> Drained:
     """Drain the cavities of a part.
@@ -56,7 +58,9 @@ def drain_cavities(
     outside : the part without its cavities, on the plate.
     diameter_mm : of the holes;  count_of : least number of holes for a cavity of so many mm³.  Of
         two or more, at least one is a vent; every pool gets an outlet of its own.
+    crumb_mm3 : dents that hold less than this are not filled.
     known : holes of a similar part, kept where they still fit.
+    kept : those of the cavities that stay, sealed, where no hole drains them.
     voxelized : the outside on a grid, where it is at hand (see `voxelized_part.voxelize`).
     """
     from manifold3d import Manifold, OpType
@@ -69,17 +73,20 @@ def drain_cavities(
     driller.keep(known)
     driller.drill_outlets()
     driller.drill_vents(count_of)
-    return _assigned(driller.drilled, cavities_of(driller.left_of(void), min_feature_mm), cavities)
+    left = driller.left_of(void, ball_mm3(min_feature_mm), crumb_mm3)
+    return _assigned(driller.drilled, cavities_of(left, min_feature_mm), cavities, kept)
 
 
 def _assigned(
     drilled: Sequence[tuple[Role, Channel]],
     pieces: Sequence[Manifold],
     before: Sequence[Manifold],
+    staying: Sequence[Manifold],
 ) -> Drained:
     """Keep the pieces that an outlet opens, with their holes.
 
-    before : the cavities before anything was filled.
+    before : the cavities before anything was filled;  staying : those of them that are not filled
+    even where no hole opens them.
     """
     solids = [bored(channel) for _, channel in drilled]
     kept: list[Manifold] = []
@@ -94,6 +101,7 @@ def _assigned(
         used.update(opening)
         holes += [Hole(*drilled[k], len(kept)) for k in opening]
         kept.append(piece)
+    kept += [void for void in staying if not any((void ^ piece).volume() > 0 for piece in kept)]
     closed = [
         float(cavity.volume())
         for cavity in before

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from printprep.cavity.carve import finished
 from printprep.drainage.channel import bored
 from printprep.drainage.drain_cavities import Drained, drain_cavities
 from printprep.drainage.driller import Hole
 from printprep.drainage.voxelized_part import voxelize
-from printprep.mesh.quantize import quantized
-from printprep.types import Drain, Drainage, Part
+from printprep.types import Drain, Drainage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from printprep.arrays import Float
     from printprep.drainage.voxelized_part import VoxelizedPart
     from printprep.profiles import Profile
-    from printprep.types import Base
+    from printprep.types import Base, Part
 
 
 class Drainer:
@@ -56,6 +57,8 @@ class Drainer:
             count_of=self.profile.drain.holes_of,
             wall_mm=self.profile.wall_mm,
             min_feature_mm=self.profile.min_feature_mm,
+            crumb_mm3=self.profile.crumb_mm3,
+            kept=part.kept,
             known=self._holes,
             voxelized=self._around(part),
         )
@@ -63,17 +66,10 @@ class Drainer:
         self.bores = _united([bored(hole.channel) for hole in found.holes])
         self.filled = _united(part.cavities) - _united(found.cavities)
         whole = Manifold.batch_boolean([part.outside, *found.cavities, self.bores], OpType.Subtract)
-        return (
-            Part(
-                quantized(whole),
-                part.outside,
-                found.cavities,
-                part.base,
-                part.name,
-                part.placement,
-            ),
-            _drainage(found),
+        drained = replace(
+            part, manifold=finished(whole, self.profile.crumb_mm3), cavities=found.cavities
         )
+        return drained, _drainage(found)
 
     def _around(self, part: Part) -> VoxelizedPart:
         """The part's outside on a grid; it changes only with the base."""

@@ -18,6 +18,7 @@ from printprep.drainage.pools import Pools
 from printprep.drainage.residual_pools import residual_pools
 from printprep.drainage.voxelized_part import VoxelizedPart
 from printprep.grid.distance import Surface
+from printprep.mesh.shell_figures import joined, pieces
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -122,15 +123,21 @@ class Driller:
                     break
                 self.drilled.append(("vent", channel))
 
-    def left_of(self, void: Manifold) -> Manifold:
-        """The void that drains: what balls do not leave is filled, then what drops do not leave."""
+    def left_of(self, void: Manifold, least_mm3: float = 0.0, crumb_mm3: float = 0.0) -> Manifold:
+        """The void that drains: what balls do not leave is filled, then what drops do not leave.
+
+        least_mm3 : pieces with less volume are no cavity and are left out;  crumb_mm3 : dents that
+        hold less stay.
+        """
         channels = self._channels("outlet")
         runs = balls_in(self.voxelized, self.void, RUNS * self.radius_mm)
         tops = np.maximum(
             self.pools.tops_mm(channels), Pools(runs, self.voxelized.grid).tops_mm(channels)
         )
-        left = void - filling(self.voxelized, tops)
-        return left - residual_pools(left, channels, FINE * self.voxelized.grid.pitch_mm)
+        # Filling and wall nearly coincide: thousands of slivers are left between them.
+        left = joined(pieces(void - filling(self.voxelized, tops), least_mm3))
+        pitch_mm = FINE * self.voxelized.grid.pitch_mm
+        return left - residual_pools(left, channels, pitch_mm, crumb_mm3)
 
     def _channels(self, role: Role) -> list[Channel]:
         return [channel for other, channel in self.drilled if other == role]

@@ -42,10 +42,13 @@ MARGIN = 4
 UNDER_FLOOR = 0.25
 
 
-def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float) -> Manifold:
+def residual_pools(
+    void: Manifold, channels: Sequence[Channel], pitch_mm: float, least_mm3: float = 0.0
+) -> Manifold:
     """The solid that fills what does not run out of a void through outlets; it reaches into walls.
 
-    channels : the outlets;  pitch_mm : of the columns on which drops run.
+    channels : the outlets;  pitch_mm : of the columns on which drops run;  least_mm3 : a dent that
+    holds less stays: a crumb in it would not print.
     """
     from manifold3d import Manifold, OpType
 
@@ -59,12 +62,28 @@ def residual_pools(void: Manifold, channels: Sequence[Channel], pitch_mm: float)
     pools = Pools(Balls(0.0, above_cracks, nothing, unused, unused), grid, diagonal=False)
     levels = pools.levels(pools.outlets(channels), FALL)
     depth = levels - dexels.low_mm
-    label = pools.connected(depth > LEAST_MM)
+    label = _dents(pools, Pools(Balls(0.0, dexels, nothing, unused, unused), grid), depth)
+    wet = label >= 0
+    held = np.bincount(label[wet], weights=depth[wet] * pitch_mm**2)
     deep = np.unique(label[depth > FILM_MM])
-    floor = Floor(grid, dexels, np.where(label >= 0, levels, -np.inf))
+    deep = deep[held[deep] >= least_mm3]
+    floor = Floor(grid, dexels, np.where(wet, levels, -np.inf))
     return Manifold.batch_boolean(
         [Manifold(), *(floor.filled(np.flatnonzero(label == dent)) for dent in deep)], OpType.Add
     )
+
+
+def _dents(pools: Pools, whole: Pools, depth_mm: Float) -> Int:
+    """(n,) the number of the dent that each wet dexel belongs to, else −1.
+
+    pools : above cracks;  whole : with cracks;  depth_mm : (n,) mm, inf where nothing runs out.
+
+    A crack is a sheet of many dexels, of which drops join no two: it is one dent by itself.
+    """
+    lost = np.isinf(depth_mm)
+    label = pools.connected((depth_mm > LEAST_MM) & ~lost)
+    sheet = whole.connected(lost)
+    return np.where(lost, sheet + label.max(initial=-1) + 1, label)
 
 
 class Floor:

@@ -69,6 +69,8 @@ def measure_depths(
     """
     surface = Surface.of(solid.manifold)
     box = np.array(solid.manifold.bounding_box())
+    # A base grows no wider than a model is long: small models would else drown in margin.
+    margin_mm = min(margin_mm, float((box[3:] - box[:3]).max()))
     coarse = coarse_depth(surface, grid_over(box[:3], box[3:], resolution, margin_mm))
     field = _fine_field(surface, coarse, wall_mm, wall_mm / cells_per_wall)
     if field is not None:

@@ -18,7 +18,7 @@ from printprep.children import FloodedError, HungError, run
 from printprep.files import reason_of, scratch_folder
 from printprep.mesh import meshlab_child
 from printprep.mesh.orient import right_side_out
-from printprep.mesh.shells import Candidate, Refusal, united
+from printprep.mesh.shells import DUST_MM3, Candidate, Refusal, united
 from printprep.mesh.weld import edge_counts, weld
 
 if TYPE_CHECKING:
@@ -36,10 +36,12 @@ class _ChildError(Exception):
         self.final = final
 
 
-def mended(vertices: Float, faces: Int) -> Iterator[Candidate | Refusal]:
+def mended(
+    vertices: Float, faces: Int, crumb_mm3: float = DUST_MM3
+) -> Iterator[Candidate | Refusal]:
     """The solid that each recipe of filters makes, the gentlest first, or why it makes none.
 
-    vertices : (n, 3) mm;  faces : (m, 3).
+    vertices : (n, 3) mm;  faces : (m, 3);  crumb_mm3 : shells of less volume are left out.
     """
     for recipe in meshlab_child.RECIPES:
         try:
@@ -50,7 +52,7 @@ def mended(vertices: Float, faces: Int) -> Iterator[Candidate | Refusal]:
                 return
             continue
         turned, actions = right_side_out(corners, triangles)
-        candidate = united(corners, turned)
+        candidate = united(corners, turned, crumb_mm3)
         if isinstance(candidate, Candidate):
             done = (_sentence(faces, turned), *actions, *candidate.actions)
             candidate = replace(candidate, actions=done)

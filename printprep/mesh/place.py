@@ -133,4 +133,5 @@ def _factor(
         return 1.0
     if extent <= 0:
         raise UsageError(f"The model is flat: it has no {what} that could become {target:g} mm.")
-    return float(target) / extent
+    with np.errstate(over="ignore"):
+        return float(np.float64(target) / np.float64(extent))

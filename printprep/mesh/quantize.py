@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
+from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
 from printprep.mesh.weld import directed_edges, drop_collapsed
 
@@ -25,8 +26,10 @@ _FLAT_SHELL_MM = 0.01
 _FLAT_SHELL_MM3 = 0.5
 # Surfaces that touch are moved apart by this much, several float32 steps at any printable size.
 _APART_MM = 2e-4
-# Tolerance of each attempt's simplification; all stay below the 0.001 mm that the outside may move.
-_MERGED_MM = (2e-5, 5e-5, 1e-4, 2e-4, 4e-4)
+# Tolerance of each attempt's simplification, none at first.
+_MERGED_MM = (0.0, 2e-5, 5e-5, 1e-4, 2e-4, 4e-4)
+# The outside may move this much.
+_MOVED_MM = 1e-3
 _NUDGE = "A slightly different size (--size) usually avoids it."
 
 
@@ -37,16 +40,34 @@ def quantized(manifold: Manifold) -> Manifold:
     an edge they move apart, by less than 0.001 mm.  Flat shells (mean thickness below 0.01 mm and
     volume below 0.5 mm³) are removed.  Applied to its own result it changes nothing.
 
+    Each attempt is measured against the manifold that was given, and undone where it moved more.
+
     Raises GeometryError where no such form is found.
     """
+    vertices, faces = quantized_arrays(manifold)
+    if not len(crowded_edges(faces)):
+        return _without_flat_shells(_rebuilt(vertices, faces))
+    reason = "it still touches itself"
+    apart, folds = manifold, None
     for tolerance_mm in _MERGED_MM:
-        vertices, faces = quantized_arrays(manifold)
-        if not len(crowded_edges(faces)):
-            return _without_flat_shells(_rebuilt(vertices, faces))
         # Welding the ends of an edge shorter than a float32 step folds triangles over.
-        manifold = _moved_apart(manifold.simplify(tolerance_mm))
+        apart = _moved_apart(apart.simplify(tolerance_mm) if tolerance_mm else apart)
+        vertices, faces = quantized_arrays(apart)
+        if len(crowded_edges(faces)):
+            continue
+        found = _rebuilt(vertices, faces)
+        fault = unfaithful(manifold, found, _MOVED_MM)
+        if fault is None:
+            return _without_flat_shells(found)
+        if fault == FOLDS and folds is None:
+            folds = found
+        # What moved too far is no ground to go on from.
+        reason, apart = fault, manifold
+    if folds is not None:  # nothing else moved: the folds are narrower than the move
+        return _without_flat_shells(folds)
     raise GeometryError(
-        "The part touches itself along an edge and cannot be moved apart there.", _NUDGE
+        f"The part touches itself along an edge and cannot be moved apart there ({reason}).",
+        _NUDGE,
     )
 
 

@@ -8,6 +8,7 @@ positive volume, that encloses the same space as the model (reference.py).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,9 +20,12 @@ from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
 from printprep.mesh.remesh import remeshed
 from printprep.mesh.sample import points_on_surface
-from printprep.mesh.shells import Candidate, Refusal, united
+from printprep.mesh.shell_figures import closed_shells, shell_figures
+from printprep.mesh.shells import DUST_MM3, Candidate, Refusal, united
+from printprep.mesh.weld import compact
 from printprep.mesh.winding_columns import winding_at
 from printprep.types import Model, Repair, Rung, Solid
+from printprep.wording import counted
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -30,11 +34,15 @@ if TYPE_CHECKING:
 
 _SAMPLES = 10_000
 _SEED = 20140801
+# Shells are compared in pairs.
+MOST_SHELLS = 5000
 _FLAT = 1e-9  # smallest extent over largest, below which a model is flat
 
 
-def repair(model: Model) -> Solid:
+def repair(model: Model, crumb_mm3: float = DUST_MM3) -> Solid:
     """The solid that a model describes, on the bed, with a record of the repair.
+
+    crumb_mm3 : bodies and voids of less volume are left out, unless the whole model is that small.
 
     Raises
     ------
@@ -42,12 +50,13 @@ def repair(model: Model) -> Solid:
         that agrees with it.
     """
     _refuse_flat(model)
+    model, crumbs = without_crumb_shells(model, crumb_mm3)
     faces, turned = right_side_out(model.vertices, model.faces)
     reference = Reference.of(model.vertices, faces)
     _refuse_empty(model, reference)
     skipped: list[str] = []
     reasons: list[str] = []
-    for rung, offer in _ladder(model.vertices, faces):
+    for rung, offer in _ladder(model.vertices, faces, crumb_mm3):
         if isinstance(offer, Refusal):
             reasons.append(f"{rung}: {offer.reason}")
             if offer.skipped:
@@ -55,7 +64,7 @@ def repair(model: Model) -> Solid:
             continue
         fault = _fault(offer, reference)
         if fault is None:
-            return _solid(model, faces, rung, offer, (*turned, *skipped))
+            return _solid(model, faces, rung, offer, (*crumbs, *turned, *skipped))
         reasons.append(f"{rung}: {fault}")
     raise GeometryError(
         f"{model.name} cannot be made a solid ({'; '.join(reasons)}).",
@@ -63,10 +72,12 @@ def repair(model: Model) -> Solid:
     )
 
 
-def _ladder(vertices: Float, faces: Int) -> Iterator[tuple[Rung, Candidate | Refusal]]:
+def _ladder(
+    vertices: Float, faces: Int, crumb_mm3: float
+) -> Iterator[tuple[Rung, Candidate | Refusal]]:
     """What each rung gives, gentlest first; vertices : (n, 3) mm, faces : (m, 3)."""
-    yield "union", united(vertices, faces)
-    for offer in mended(vertices, faces):
+    yield "union", united(vertices, faces, crumb_mm3)
+    for offer in mended(vertices, faces, crumb_mm3):
         yield "meshlab", offer
     yield "remesh", remeshed(vertices, faces)
 
@@ -76,6 +87,38 @@ def _fault(offer: Candidate, reference: Reference) -> str | None:
     if not offer.manifold.volume() > 0:
         return "its volume is not positive"
     return reference.disagreement(offer.manifold, offer.slack_mm3)
+
+
+def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[str, ...]]:
+    """The model without closed shells that are too small to print, and a sentence on them.
+
+    Raises GeometryError where nothing else is left, or more shells than can be sorted.
+    """
+    figures = shell_figures(model.vertices, model.faces)
+    closed = closed_shells(model.faces, figures)
+    crumbs = closed & figures.crumbs(crumb_mm3)
+    count = len(crumbs) - int(crumbs.sum())
+    if not count:
+        raise GeometryError(
+            f"{model.name} consists of {len(crumbs)} bodies, each of less than {crumb_mm3:.3g} "
+            "mm³: none of them prints.",
+            "Unite them in the program that made the model, or scale it up (--size).",
+        )
+    if count > MOST_SHELLS:
+        raise GeometryError(
+            f"{model.name} consists of {count} separate pieces of surface; {MOST_SHELLS} is the "
+            "most that is repaired.",
+            "Unite them in the program that made the model.",
+        )
+    if not crumbs.any():
+        return model, ()
+    stays = ~crumbs[figures.label]
+    vertices, faces = compact(model.vertices, model.faces[stays])
+    paint = model.paint
+    if paint is not None:
+        paint = replace(paint, labels=paint.labels[stays])
+    sentence = f"Left out {counted(int(crumbs.sum()), 'shell')} too small to print."
+    return replace(model, vertices=vertices, faces=faces, paint=paint), (sentence,)
 
 
 def _refuse_flat(model: Model) -> None:

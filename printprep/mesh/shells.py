@@ -13,14 +13,8 @@ from typing import TYPE_CHECKING
 import manifold3d
 import numpy as np
 
-from printprep.mesh.measure import (
-    innermost,
-    inverted,
-    shells,
-    signed_volumes,
-    together,
-    try_manifold,
-)
+from printprep.mesh.measure import innermost, shells, signed_volumes, try_manifold
+from printprep.mesh.shell_figures import CRUMB_SHARE, without_crumbs
 from printprep.mesh.weld import components
 from printprep.wording import counted
 
@@ -29,10 +23,8 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-# A shell smaller than both, a share of the bounding box and a volume, is dust: 0.001 mm³ is a cube
-# of 0.1 mm, which no printer resolves.
-_DUST_OF_BOX = 1e-9
-_DUST_MM3 = 1e-3
+# 0.001 mm³ is a cube of 0.1 mm, which no printer resolves.
+DUST_MM3 = 1e-3
 # A piece of surface thinner than this, relative to its size, lies in a plane and encloses nothing.
 _FLAT = 1e-6
 # Share of the volume that may be lost when the kernel merges the shortest edges.
@@ -64,10 +56,11 @@ class Refusal:
     skipped: bool = False
 
 
-def united(vertices: Float, faces: Int) -> Candidate | Refusal:
+def united(vertices: Float, faces: Int, least_mm3: float = DUST_MM3) -> Candidate | Refusal:
     """The union of a mesh's shells, or why there is none.
 
-    vertices : (n, 3) mm;  faces : (m, 3), right side out.  Pieces that lie in a plane enclose
+    vertices : (n, 3) mm;  faces : (m, 3), right side out;  least_mm3 : shells of less volume are
+    left out, unless the whole model is that small.  Pieces that lie in a plane enclose
     nothing and are left out; any other open piece is a refusal, since other rungs close it.
     """
     whole, status = try_manifold(vertices, faces)
@@ -81,14 +74,16 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
             f"Moved vertices by up to {nudge:.1g} mm, to separate folds without thickness."
         )
     if status == "NoError":
-        parts, scraps, rough = whole.decompose(), 0, 0
+        large, dust = without_crumbs(whole, least_mm3)
+        parts, scraps, rough = large.decompose(), 0, 0
     else:
         parts, scraps, rough = _closed_pieces(vertices, faces)
+        parts, dust = _without_dust(parts, least_mm3)
     if rough:
         return Refusal(
             f"{counted(rough, 'piece')} of its surface {'is' if rough == 1 else 'are'} not closed"
         )
-    solids, voids, dust = _without_dust(parts, vertices)
+    solids, voids = _by_sign(parts)
     if not solids:
         return Refusal("it encloses no volume")
     if scraps:
@@ -106,9 +101,8 @@ def united(vertices: Float, faces: Int) -> Candidate | Refusal:
         )
     elif status == "NoError" and not actions:
         return Candidate(whole)
-    solids, voids, dust = _without_dust(joined.decompose(), vertices)
-    if dust and solids:
-        joined = together([*solids, *(inverted(void) for void in voids)])
+    joined, dust = without_crumbs(joined, least_mm3)
+    if dust:
         actions.append(f"Left out {counted(dust, 'shell')} of the union, too small to print.")
     return Candidate(joined, tuple(actions))
 
@@ -155,20 +149,23 @@ def _is_flat(points: Float) -> bool:
     return len(points) <= 3 or float(spread[-1]) <= _FLAT * float(spread[0])
 
 
-def _without_dust(
-    parts: list[Manifold], vertices: Float
-) -> tuple[list[Manifold], list[Manifold], int]:
-    """Solids and voids of parts, and how many are too small; vertices : (n, 3) mm, of the mesh."""
-    box = float(np.prod(vertices.max(axis=0) - vertices.min(axis=0)))
-    limit = min(_DUST_OF_BOX * box, _DUST_MM3)
-    kept = [part for part in parts if abs(part.volume()) > limit]
+def _without_dust(parts: list[Manifold], least_mm3: float) -> tuple[list[Manifold], int]:
+    """The parts that are large enough to print, and how many are not."""
+    sizes = [abs(part.volume()) for part in parts]
+    limit = min(least_mm3, CRUMB_SHARE * sum(sizes))
+    kept = [part for part, size in zip(parts, sizes, strict=True) if size >= limit]
+    return kept, len(parts) - len(kept)
+
+
+def _by_sign(parts: list[Manifold]) -> tuple[list[Manifold], list[Manifold]]:
+    """The solids and the voids of parts; voids as positive solids."""
     solids: list[Manifold] = []
     voids: list[Manifold] = []
-    for part in kept:
+    for part in parts:
         outer, inner = shells(part)
         solids += outer
         voids += inner
-    return solids, voids, len(parts) - len(kept)
+    return solids, voids
 
 
 def _join(solids: list[Manifold], voids: list[Manifold]) -> tuple[Manifold, int]:

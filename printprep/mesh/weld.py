@@ -116,11 +116,11 @@ def first_connected(one: Int, other: Int, count: int) -> Int:
 
     one, other : (k,) the two ends of each link; things are connected directly or through others.
     """
-    label = _connected(one, other, count)
+    label = connected(one, other, count)
     return np.unique(label, return_index=True)[1][label]
 
 
-def _connected(one: Int, other: Int, count: int) -> Int:
+def connected(one: Int, other: Int, count: int) -> Int:
     """(count,) number of the connected component of each thing; one, other : (k,) ends of links."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
@@ -202,6 +202,6 @@ def components(faces: Int, vertex_count: int) -> list[Int]:
     a, b = owner[order][:-1][same], owner[order][1:][same]
     if not len(faces):
         return []
-    label = _connected(a, b, len(faces))
+    label = connected(a, b, len(faces))
     groups = np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
     return sorted(groups, key=lambda group: (-len(group), int(group[0])))

@@ -170,7 +170,8 @@ def carve(
     if density.planes is None:
         hollowable_volume = hollowable_volume ^ _below_half(density, program.interior.domain)
     void = cut(hollowable_volume, program.bodies, planes)
-    return make_part(solid, base, cavities_of(void, program.profile.min_feature_mm))
+    profile = program.profile
+    return make_part(solid, base, cavities_of(void, profile.min_feature_mm), profile.crumb_mm3)
 
 
 def _below_half(density: Density, domain: Domain) -> Manifold:

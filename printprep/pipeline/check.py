@@ -40,6 +40,7 @@ def check(
     overrides: Mapping[str, object] | None = None,
     placement: Placement = AS_IN_FILE,
     lean: float | str | Lean | None = None,
+    max_memory_mib: float | None = None,
     progress: Progress = SILENT,
 ) -> Checked:
     """Run the rules on a file, placed as ``hollow`` places it but otherwise as it came.
@@ -56,7 +57,8 @@ def check(
 
     settings = load_profile(profile, overrides or {})
     requested = lean_of(lean, settings.stability.lean_deg)
-    return check_prepared(prepare(model, settings, placement, progress), requested, progress)
+    prepared = prepare(model, settings, placement, progress, max_memory_mib=max_memory_mib)
+    return check_prepared(prepared, requested, progress)
 
 
 def check_prepared(prepared: Prepared, lean: Lean, progress: Progress = SILENT) -> Checked:

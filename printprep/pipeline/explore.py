@@ -82,6 +82,7 @@ def explore(
     from printprep.pipeline.cavity import carve
     from printprep.pipeline.hollowable import hollowable
     from printprep.pipeline.prepare import prepare
+    from printprep.pipeline.voids import settle_voids
     from printprep.profiles import load_profile
     from printprep.stand.stability import stability
     from printprep.types import Lean
@@ -91,7 +92,7 @@ def explore(
     check_resolution(options.resolution)
     settings = load_profile(profile, {**(overrides or {}), "stability.lean_margin_deg": 0.0})
     vault_choice(options.vaults, settings)
-    prepared = prepare(model, settings, placement, progress)
+    prepared = settle_voids(prepare(model, settings, placement, progress), options, progress)
     solid = prepared.solid
     grams = settings.material.density_g_cm3 / 1000
     first_layer_mm = settings.printer.first_layer_mm

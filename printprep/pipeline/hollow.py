@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.objectives import DEFAULT_OBJECTIVE, PLANE, Solver, check_solver, objective_of
 from printprep.pipeline.fills import fill_of
-from printprep.pipeline.options import FillOptions, Placement, check_resolution, drain_keys
+from printprep.pipeline.options import (
+    FillOptions,
+    Placement,
+    VoidPolicy,
+    check_resolution,
+    drain_keys,
+)
 from printprep.progress import SILENT, Progress, Stage, Stopwatch
 
 if TYPE_CHECKING:
     import trimesh
+    from manifold3d import Manifold
 
     from printprep.check.context import CheckContext
+    from printprep.check.walls import Enclosed
     from printprep.density.program import BasePolicy
     from printprep.pipeline.filled import Filled
     from printprep.pipeline.prepare import Prepared
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Advice, AlternativeFill, Finding, Lean, VaultChoice
+    from printprep.types import Advice, AlternativeFill, Finding, Lean, Part, Solid, VaultChoice
 
 
 def hollow_with(
@@ -40,13 +48,24 @@ def hollow_with(
     from printprep.check.reading import reading_findings
     from printprep.pipeline.alternative_fill import alternative_fill
     from printprep.pipeline.prepare import prepare
+    from printprep.pipeline.soundness import check_sound
+    from printprep.pipeline.voids import settle_voids
     from printprep.stand.lean import lean_of
 
     lean = lean_of(options.lean, profile.stability.lean_deg)
     check_options(profile, options)
     clock = Stopwatch(progress)
-    prepared = prepare(model, profile, placement, clock)
+    prepared = prepare(
+        model,
+        profile,
+        placement,
+        clock,
+        resolution=options.resolution,
+        max_memory_mib=options.max_memory_mib,
+    )
+    prepared = settle_voids(prepared, options, clock)
     filled = fill_of(options.fill).run(prepared, options, lean, clock)
+    check_sound(filled.part, filled.drainage.drains if filled.drainage is not None else ())
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
@@ -78,11 +97,13 @@ def hollow(
     solver: str = PLANE,
     device: str = "cpu",
     base: BasePolicy = "auto",
+    voids: VoidPolicy = "fill",
     vaults: VaultChoice | None = None,
     drains: int | None = None,
     drain_diameter_mm: float | None = None,
     fill: str = "cavity",
     slicer: Path | None = None,
+    max_memory_mib: float | None = None,
     progress: Progress = SILENT,
 ) -> HollowResult:
     """Hollow a model: the lightest part that stands at the requested lean.
@@ -106,6 +127,8 @@ def hollow(
         as in the paper, on a torch ``device`` ("cpu", "cuda").
     base : whether material may be added around the feet: "auto" (where that saves material),
         "never", "always".
+    voids : "fill" fills the sealed voids that the model brings, but for those that hold a body of
+        their own, before anything is hollowed; "keep" leaves all of them.
     vaults : whose overhang rule the vaults keep that carry the ceilings of cavities: "printer",
         "slicer", or "none" for no vaults.  None takes the printer's if the process needs vaults.
         Such a part is written as a 3MF for PrusaSlicer, with a support blocker.
@@ -115,6 +138,8 @@ def hollow(
         sparse infill with dense ballast where weight is needed (filament only).
     slicer : the PrusaSlicer that weighs an infill print.  None uses the one installed; without one
         the print is estimated.
+    max_memory_mib : a model whose estimate exceeds this is refused; None takes what the machine
+        has free.
 
     Raises
     ------
@@ -131,8 +156,10 @@ def hollow(
         objective=objective,
         solver=Solver(solver, device),
         base=base,
+        voids=voids,
         vaults=vaults,
         slicer=slicer,
+        max_memory_mib=max_memory_mib,
     )
     return hollow_with(model, settings, placement, options, progress)
 
@@ -162,14 +189,28 @@ def advise(prepared: Prepared, filled: Filled, lean: Lean, progress: Progress) -
 def context_of(
     prepared: Prepared, filled: Filled, lean: Lean, advice: Advice | None
 ) -> CheckContext:
-    """The part as the rules look at it."""
-    from printprep.check import CheckContext
+    """The part as the rules look at it: the triangles that will be written, as of any file.
 
-    part = filled.part
+    So whatever ``check`` says of the file, ``hollow`` says too.  Walls are measured from the
+    cavities to the surface of the model.
+    """
+    from printprep.check import CheckContext
+    from printprep.check.context import separated
+    from printprep.mesh.quantize import quantized_arrays
+    from printprep.types import Model
+
+    part, solid = filled.part, prepared.solid
+    outside, sealed = separated(part.manifold)
+    opened = bool(filled.drainage is not None and filled.drainage.drains)
+    vertices, faces = quantized_arrays(part.manifold)
     return CheckContext(
         part=part.manifold,
-        outside=part.outside,
-        cavities=part.cavities,
+        outside=outside,
+        cavities=sealed,
+        drained=part.cavities if opened else (),
+        walls=walls_of(part, solid, sealed if not opened else part.cavities),
+        raw=Model(vertices, faces, part.placement, part.name),
+        voids=prepared.voids,
         stability=filled.stability,
         lean=lean,
         repair=prepared.solid.repair,
@@ -180,6 +221,28 @@ def context_of(
         drainage=filled.drainage,
         blocker=filled.blocker,
     )
+
+
+def walls_of(part: Part, solid: Solid, cavities: Sequence[Manifold]) -> tuple[Enclosed, ...]:
+    """Between what the walls of a part are measured: its cavities, its outside, voids that stay.
+
+    cavities : of the part as it will be written, or before drain holes opened them.
+    """
+    from printprep.check.context import separated
+    from printprep.check.walls import Enclosed
+
+    around, holding = separated(part.outside)
+    pairs = [Enclosed(around, (*cavities, *holding) if holding else tuple(cavities))]
+    if holding:
+        pairs.append(Enclosed(part.outside, part.cavities))
+    if part.kept:
+        cut = tuple(
+            cavity
+            for cavity in part.cavities
+            if not any((cavity ^ void).volume() > 0 for void in part.kept)
+        )
+        pairs.append(Enclosed(solid.manifold, cut))
+    return tuple(pairs)
 
 
 def result_of(
@@ -203,10 +266,10 @@ def result_of(
         part=filled.part,
         profile=profile,
         density=filled.density,
-        stability_solid=stability(solid.manifold, profile.printer.first_layer_mm),
+        stability_solid=stability(solid.whole, profile.printer.first_layer_mm),
         stability=filled.stability,
         lean=context.lean,
-        solid_mass_g=solid.manifold.volume() * grams_per_mm3,
+        solid_mass_g=solid.whole.volume() * grams_per_mm3,
         mass_g=filled.volume_mm3 * grams_per_mm3,
         wall_min_mm=None if context.wall is None else context.wall.value_mm,
         findings=findings,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from printprep.cavity.surface import cavity_surface
+from printprep.cavity.ties import tied
 from printprep.errors import UsageError
 from printprep.supports.blocker import support_blocker
 from printprep.supports.policy import supported, vault_choice
@@ -63,7 +64,7 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
             margin_mm=profile.stability.base_growth_max_mm,
         )
     with progress.stage("cavity"):
-        deep = cavity_surface(solid.manifold, depths.field, profile.wall_mm)
+        deep = tied(cavity_surface(solid.manifold, depths.field, profile.wall_mm))
     if deep.is_empty() or not profile.traits.ceilings_sag:
         return Hollowable(deep, deep, depths, None, None, profile)
     with progress.stage("supports"):

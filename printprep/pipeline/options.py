@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from printprep.errors import UsageError
 from printprep.objectives import DEFAULT_OBJECTIVE, Solver
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from printprep.density.program import BasePolicy
     from printprep.types import Lean, VaultChoice
+
+VoidPolicy = Literal["fill", "keep"]
 
 FINEST, COARSEST = 512, 8  # voxels along the longest side
 
@@ -55,12 +57,15 @@ class FillOptions:
     resolution : voxels along the longest side.
     objective, solver : a name in :data:`printprep.objectives.OBJECTIVES`, and how it is solved.
     base : whether material may be added around the feet.
+    voids : whether the model's own sealed voids are filled before hollowing, or stay.
     vaults : whose overhang rule the vaults keep that carry ceilings: "printer", which counts on a
         support blocker in the file, or "slicer"; "none" for no vaults.  None takes the printer's
         where ceilings sag in the profile's process, and the slicer's where the file that is written
         cannot carry a blocker.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
+    max_memory_mib : a model whose estimate exceeds this is refused; None: what the machine has
+        free.
     """
 
     fill: str = "cavity"
@@ -69,8 +74,10 @@ class FillOptions:
     objective: str = DEFAULT_OBJECTIVE
     solver: Solver = field(default_factory=Solver)
     base: BasePolicy = "auto"
+    voids: VoidPolicy = "fill"
     vaults: VaultChoice | None = None
     slicer: Path | None = None
+    max_memory_mib: float | None = None
 
 
 def drain_keys(count: int | None, diameter_mm: float | None) -> Mapping[str, object]:

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from printprep.errors import UsageError
+from printprep.pipeline.limits import check_memory, check_size
 from printprep.pipeline.options import AS_IN_FILE, Placement
 from printprep.progress import Progress
+from printprep.types import NO_VOIDS, ModelVoids
 
 if TYPE_CHECKING:
     import trimesh
@@ -19,11 +21,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A model that is ready: its own triangles, placed, and the solid made from them."""
+    """A model that is ready: its own triangles, placed, and the solid made from them.
+
+    voids : what became of its sealed voids.
+    """
 
     model: Model
     solid: Solid
     profile: Profile
+    voids: ModelVoids = NO_VOIDS
 
 
 def prepare(
@@ -31,25 +37,45 @@ def prepare(
     profile: Profile,
     placement: Placement,
     progress: Progress,
+    *,
+    resolution: int = 0,
+    max_memory_mib: float | None = None,
 ) -> Prepared:
     """Read a model (a mesh file, a voxel file or a mesh), place it, and make it into a solid.
+
+    resolution : of the grid that follows, 0 for none;  max_memory_mib : that the run may take, None
+    for what the machine has free.  A model that is too large or too small, or takes more memory, is
+    refused once it is read.
 
     Raises
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
     from printprep.mesh.carry import facets_apart
-    from printprep.mesh.repair import repair
+    from printprep.mesh.repair import repair, without_crumb_shells
 
     with progress.stage("read"):
         placed = placed_model(model, placement)
+    check_size(placed, profile, placement)
+    check_memory(placed, profile, resolution, max_memory_mib)
     with progress.stage("repair"):
-        solid = repair(placed)
+        placed, crumbs = without_crumb_shells(placed, profile.crumb_mm3)
+        solid = _also(repair(placed, profile.crumb_mm3), crumbs)
         if placed.paint is not None:
             solid = replace(solid, manifold=facets_apart(solid.manifold))
         if placement.pose is not None:
             placed, solid = _posed(placed, solid, placement.pose)
     return Prepared(placed, solid, profile)
+
+
+def _also(solid: Solid, before: tuple[str, ...]) -> Solid:
+    """The solid, with what was done before its repair."""
+    if not before:
+        return solid
+    rung = "union" if solid.repair.rung == "as-is" else solid.repair.rung
+    return replace(
+        solid, repair=replace(solid.repair, rung=rung, actions=(*before, *solid.repair.actions))
+    )
 
 
 def placed_model(model: str | Path | trimesh.Trimesh, placement: Placement = AS_IN_FILE) -> Model:

@@ -12,6 +12,7 @@ from manifold3d import Manifold
 
 from printprep.cavity.carve import cavities_of, cut, make_part
 from printprep.cavity.surface import cavity_surface
+from printprep.cavity.ties import tied
 from printprep.grid.depth import measure_depths
 from printprep.mesh.measure import arrays, distance_mm
 from printprep.types import Plane
@@ -52,15 +53,26 @@ def test_reentrant_edges_keep_their_wall() -> None:
     assert 1.2 - 0.04 <= thinnest(block, hollowable_volume) <= 1.2 + 0.03
 
 
-def test_walls_are_measured_from_voids_the_model_already_has() -> None:
+def test_a_void_that_stays_keeps_its_wall_and_is_tied_to_the_floor() -> None:
     void = solids.box(8, 8, 8).translate((0, 0, 16))
     cube = solids.box(40, 40, 40) - void
-    hollowable_volume = hollowable_in(cube, 2.0)
+    hollowable_volume = tied(hollowable_in(cube, 2.0))
     assert thinnest(void, hollowable_volume) >= 2.0 - 0.04
     part = make_part(solids.solid(cube), None, cavities_of(hollowable_volume, 1.0))
-    # Two shells of the outside and two of the cavity, which surrounds the old void.
-    assert len(part.manifold.decompose()) == 4
+    # The outside, the cavity and the void: the block around the void stands on the floor.
+    assert len(part.manifold.decompose()) == 3
     assert len(part.cavities) == 1
+    untied = hollowable_in(cube, 2.0)
+    pedestal = 12.0 * 12.0 * 12.0  # the block's shadow, from the floor to its underside
+    assert untied.volume() - hollowable_volume.volume() == pytest.approx(pedestal, rel=0.02)
+
+
+def test_what_floats_in_a_cavity_is_left_out() -> None:
+    cube = solids.box(40, 40, 40)
+    room = solids.box(30, 30, 30).translate((0, 0, 5))
+    floating = solids.box(8, 8, 8).translate((0, 0, 16))
+    part = make_part(solids.solid(cube), None, cavities_of(room - floating, 1.0))
+    assert part.manifold.volume() == pytest.approx(40**3 - 30**3, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -8,7 +8,14 @@ from check_cases import CASES, Case, found_in
 from printprep.check import RULES
 
 # Rules about what was done to a part: a file as it came has no such circumstance.
-_OF_OURS = {"drain-filled", "lean-out-of-reach", "nothing-to-hollow", "watertight"}
+_OF_OURS = {
+    "drain-filled",
+    "lean-out-of-reach",
+    "nothing-to-hollow",
+    "void-filled",
+    "void-kept",
+    "watertight",
+}
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

@@ -106,7 +106,7 @@ def trapped(
     if part.is_empty():
         return ()
     least = np.pi / 6 * diameter_mm**3 if least_mm3 is None else least_mm3
-    space = _pour_clearance(part, diameter_mm, pitch_mm)
+    space = pour_clearance(part, diameter_mm, pitch_mm)
     if space.empty.all():  # thinner than a cell everywhere
         return ()
     fits = space.ball_fits(diameter_mm / 2)
@@ -116,7 +116,7 @@ def trapped(
     return tuple(sorted(kept, key=lambda item: (item.kind == "pool", -item.volume_mm3)))
 
 
-def _pour_clearance(part: Manifold, diameter_mm: float, pitch_mm: float | None = None) -> Clearance:
+def pour_clearance(part: Manifold, diameter_mm: float, pitch_mm: float | None = None) -> Clearance:
     """The clearance on which a ball of a diameter is followed, with space for it all around."""
     if pitch_mm is None:
         low, high = np.reshape(part.bounding_box(), (2, 3))
@@ -217,13 +217,13 @@ def _pools(space: Clearance, fits: Bool, radius_mm: float, least_mm3: float) -> 
         if len(wet) * pitch**3 < least_mm3:
             continue
         if enclosed is None:
-            enclosed = _enclosed(space, fits, radius_mm)
+            enclosed = enclosed_cells(space, fits, radius_mm)
         centres = cells[fits.flat[cells]]
         found.append(_Found("pool", wet, _mostly(enclosed.flat[centres]), None))
     return found
 
 
-def _enclosed(space: Clearance, fits: Bool, radius_mm: float) -> Bool:
+def enclosed_cells(space: Clearance, fits: Bool, radius_mm: float) -> Bool:
     """(nx, ny, nz) bool, cells that belong to spaces wider than their ways out.
 
     fits : (nx, ny, nz) bool, cells where the ball's centre fits.
