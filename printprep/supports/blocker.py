@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.cavity.surface import isosurface
+from printprep.errors import GeometryError
 from printprep.grid.distance import DepthField, Surface
 from printprep.mesh.measure import arrays
 from printprep.mesh.quantize import quantized
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 MARGIN_MM = 0.02
 # The field is taken at every n-th cell, and the surface simplified by this share of the room on
 # either side; the first that keeps the limits is taken.
-_COARSENESS = ((2, 0.5), (2, 0.25), (1, 0.5), (1, 0.25), (1, 0.05))
+_COARSENESS = ((2, 0.5), (2, 0.4), (2, 0.3), (2, 0.2), (1, 0.4), (1, 0.2), (1, 0.05))
 # What may be left uncovered: less than the rounding of coordinates makes.
 _CRUMB_MM3 = 1e-3
 
@@ -62,7 +63,10 @@ def support_blocker(
     raised = hollowable_volume.translate((0.0, 0.0, step_mm))
     for stride, share in _COARSENESS:
         drawn = isosurface(_around_cavities(field, stride, profile.wall_mm, level_mm), level_mm)
-        blocker = quantized(drawn.simplify(share * (level_mm - least_mm)))
+        try:
+            blocker = quantized(drawn.simplify(share * (level_mm - least_mm)))
+        except GeometryError:  # it touches itself; a finer one may not
+            continue
         covers = (raised - blocker).volume() < _CRUMB_MM3
         if covers and _least_depth(blocker, outside)[0] >= least_mm:
             return blocker
