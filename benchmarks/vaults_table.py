@@ -32,6 +32,7 @@ from rows import Row, markdown_lines, measured_rows, table_parser
 from support_inside import supports_g
 
 from printprep.check.walls import united
+from printprep.errors import ToolError
 from printprep.gcode.measure import measure_gcode
 from printprep.mesh.measure import shells
 from printprep.mesh.write import to_bytes
@@ -148,6 +149,7 @@ def prints(
     """Grams, hours and the slicer's processor seconds: the part, and the model with infill.
 
     For a part with ballast also the grams of the print with infill that stands at the same lean.
+    A model that touches the bed in a point has no first layer, so no slicer prints it as it is.
     """
     profile = result.profile
     part, model = folder / "part.3mf", folder / "model.stl"
@@ -158,7 +160,10 @@ def prints(
     row = {f"part_{key}": value for key, value in sliced(slicer, part, settings, folder).items()}
     for pattern in INFILLS:
         infill = {**settings, **wall_keys(profile), "fill_density": "15%", "fill_pattern": pattern}
-        found = sliced(slicer, model, infill, folder)
+        try:
+            found = sliced(slicer, model, infill, folder)
+        except ToolError:
+            found = {}
         row |= {f"{pattern}_{key}": value for key, value in found.items()}
     if any(plane is not None for plane in result.density.planes or ()):
         options = FillOptions(fill="infill", slicer=slicer.executable)
@@ -267,7 +272,7 @@ def summary(rows: Sequence[Row], names: Sequence[str]) -> list[str]:
     )
     for name in names:
         printed = [row for row in rows if f"{name}:part_g" in row]
-        plain = [row for row in printed if not row["ballast"]]
+        plain = [row for row in printed if not row["ballast"] and f"{name}:lightning_g" in row]
         if plain:
             grams, hours, quick, cpu = (
                 [row[f"{name}:part_{key}"] / row[f"{name}:{other}_{key}"] for row in plain]
