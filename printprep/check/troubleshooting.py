@@ -252,8 +252,8 @@ TOPICS = (
             Remedy(
                 "suction-cup",
                 "The layers printed so far enclose an empty space, with the plate or the part as "
-                "its floor: a mug, a bell, a cavity whose holes come later. The film closes it, and "
-                "every peel pulls against a vacuum.",
+                "its floor: a mug, a bell, a cavity whose holes come later. The film closes it, "
+                "and every peel pulls against a vacuum.",
                 "Add a vent at the end of the cup toward the plate, or turn the part.",
             ),
             Remedy(
