@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_lines import missing_targets, unknown_options
 
-from printprep.cli.app import printprep
 from printprep.cli.run import run
 from printprep.output.figures import Figures
 from printprep.threemf.read import ATTACHMENT, read_3mf
@@ -207,10 +207,7 @@ def test_every_command_can_be_parsed(line):
         assert name in scripts and not rest
         return
     assert program == "printprep"
-    command = printprep.get_command(printprep.make_context("printprep", ["profiles"]), name)
-    assert command is not None
-    known = {option for item in command.params for option in item.opts}
-    assert {word for word in rest if word.startswith("-")} <= known
+    assert unknown_options([name, *rest]) == set()
 
 
 def test_every_model_is_a_sample_or_made_by_the_recipe():
@@ -220,5 +217,4 @@ def test_every_model_is_a_sample_or_made_by_the_recipe():
 
 
 def test_pages_that_are_linked_exist():
-    for target in re.findall(r"\]\(([^)#]+)\)", PAGE.read_text(encoding="utf-8")):
-        assert (PAGE.parent / target).exists()
+    assert missing_targets(PAGE) == []
