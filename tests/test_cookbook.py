@@ -129,7 +129,7 @@ def hundred(folder: Path, said: str) -> None:
     summary = (folder / "orders" / "summary.html").read_text(encoding="utf-8")
     for name in ("small", "large", "bottle"):
         assert (folder / "orders" / f"{name}.html").is_file()
-        assert f'href="{name}.html"' in summary
+        assert f'href="./{name}.html"' in summary
 
 
 def scan(folder: Path, said: str) -> None:
