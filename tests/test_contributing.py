@@ -14,7 +14,7 @@ from closed_form_parts import box, context
 
 import printprep
 from printprep import objectives
-from printprep.check import catalogue, registry, run_rules
+from printprep.check import catalogue, registry, run_rules, troubleshooting
 from printprep.cli import app
 from printprep.cli.run import run
 from printprep.objectives import OBJECTIVES
@@ -57,6 +57,8 @@ def tower(tmp_path):
 
 def test_the_rule(monkeypatch):
     kind = last_value(example("catalogue"), {"Kind": catalogue.Kind})
+    remedy = last_value(example("remedy"), {"Remedy": troubleshooting.Remedy})
+    assert remedy.id == kind.id
     kinds = MappingProxyType({**catalogue.CATALOGUE, kind.id: kind})
     monkeypatch.setattr(catalogue, "CATALOGUE", kinds)
     monkeypatch.setattr(registry, "CATALOGUE", kinds)
@@ -100,4 +102,12 @@ def test_the_command(monkeypatch, tower, capsys):
 
 def test_every_door_has_an_example_and_every_example_a_test():
     named = re.findall(r"^ *```python (\w+)$", PAGE.read_text(encoding="utf-8"), re.M)
-    assert sorted(named) == ["catalogue", "command", "fill", "objective", "process", "rule"]
+    assert sorted(named) == [
+        "catalogue",
+        "command",
+        "fill",
+        "objective",
+        "process",
+        "remedy",
+        "rule",
+    ]
