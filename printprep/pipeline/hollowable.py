@@ -68,7 +68,8 @@ def hollowable(prepared: Prepared, options: FillOptions, progress: Progress) -> 
     if deep.is_empty() or not profile.traits.ceilings_sag:
         return Hollowable(deep, deep, depths, None, None, profile)
     with progress.stage("supports"):
-        return _vaulted(deep, depths, prepared, vault_choice(options.vaults, profile), options)
+        choice = vault_choice(options.vaults, profile, blocker=options.blocker)
+        return _vaulted(deep, depths, prepared, choice, options)
 
 
 def _vaulted(
@@ -79,10 +80,10 @@ def _vaulted(
     Where walls are too thin for a blocker, the vaults keep the slicer's rule.
     """
     profile, blocker = prepared.profile, None
-    if choice != "slicer":
+    if choice != "slicer" and options.blocker:
         assert depths.field is not None  # the volume is not empty
         blocker = support_blocker(prepared.solid.manifold, depths.field, deep, profile)
-    if choice == "printer" and blocker is None:
+    if choice == "printer" and blocker is None and options.blocker:
         if options.vaults is not None:
             raise UsageError(
                 f"Walls of {profile.wall_mm:g} mm are too thin for a support blocker, which vaults "

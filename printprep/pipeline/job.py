@@ -19,7 +19,7 @@ from printprep.progress import SILENT, Progress
 if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Drainage, Finding, Severity, SlicerName, VaultChoice
+    from printprep.types import Drainage, Finding, Severity, SlicerName
     from printprep.verify.run import Verified
 
 
@@ -81,12 +81,13 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     """
     from printprep.check import at_or_above, sorted_findings
     from printprep.output.colours import colour_findings
-    from printprep.output.limits import format_findings, vault_findings
+    from printprep.output.limits import carries_blocker, format_findings, vault_findings
     from printprep.pipeline.hollow import hollow_with
     from printprep.verify.unwritten import verify_result
 
     profile = check_job(job)
-    options = replace(job.options, vaults=_vaults(job, profile))
+    carried = carries_blocker(job.output.suffix, job.written_for)
+    options = replace(job.options, blocker=job.options.blocker and carried)
     result = hollow_with(job.model, profile, job.placement, options, progress)
     file_findings = [
         *format_findings(result.profile, job.output, job.written_for),
@@ -117,16 +118,6 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     with progress.stage("write"):
         plugs = _write(job, result)
     return JobResult(result, findings, verified, job.output, plugs)
-
-
-def _vaults(job: Job, profile: Profile) -> VaultChoice | None:
-    """The vaults of a job: for the slicer where its file cannot carry a support blocker."""
-    from printprep.output.limits import carries_blocker
-
-    carried = carries_blocker(job.output.suffix, job.written_for)
-    if job.options.vaults is None and profile.traits.ceilings_sag and not carried:
-        return "slicer" if job.options.fill == "cavity" else None
-    return job.options.vaults
 
 
 def check_job(job: Job) -> Profile:

@@ -77,7 +77,7 @@ def _cost_of_leans(
 
     if checked.context.cavities or checked.context.stability.tilt_deg is None:
         return ()
-    volume = hollowable(prepared, FillOptions(vaults="none"), progress)
+    volume = hollowable(prepared, FillOptions(vaults="none", blocker=False), progress)
     if volume.manifold.is_empty():
         return ()
     program = volume.program(prepared.solid)

@@ -60,8 +60,8 @@ class FillOptions:
     voids : whether the model's own sealed voids are filled before hollowing, or stay.
     vaults : whose overhang rule the vaults keep that carry ceilings: "printer", which counts on a
         support blocker in the file, or "slicer"; "none" for no vaults.  None takes the printer's
-        where ceilings sag in the profile's process, and the slicer's where the file that is written
-        cannot carry a blocker.
+        where ceilings sag in the profile's process, and the slicer's without a blocker.
+    blocker : whether a support blocker is made; the file must be able to carry it.
     slicer : the PrusaSlicer that weighs infill prints.  None uses the one installed; without one
         the print is estimated.
     max_memory_mib : a model whose estimate exceeds this is refused; None: what the machine has
@@ -76,6 +76,7 @@ class FillOptions:
     base: BasePolicy = "auto"
     voids: VoidPolicy = "fill"
     vaults: VaultChoice | None = None
+    blocker: bool = True
     slicer: Path | None = None
     max_memory_mib: float | None = None
 

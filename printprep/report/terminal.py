@@ -293,6 +293,11 @@ def _advice(result: HollowResult, output: str) -> list[str]:
         f"nozzle and {profile.material.name}: a model file cannot carry these "
         f"(`printprep profiles export {profile.name}` writes them for PrusaSlicer)."
     ]
+    if result.blocker is not None and output.lower().endswith(".3mf"):
+        advice.append(
+            "The file keeps PrusaSlicer's supports out of the cavities. Other slicers do not read "
+            "that: for them, write the part with --for."
+        )
     plate_only = "support_material_buildplate_only" in profile.slicer.object_settings
     if plate_only and result.part.cavities and output.lower().endswith(".3mf"):
         advice.append(

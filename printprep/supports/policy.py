@@ -14,8 +14,12 @@ if TYPE_CHECKING:
     from printprep.types import Supports, VaultRule
 
 
-def vault_choice(requested: VaultChoice | None, profile: Profile) -> VaultChoice:
-    """The choice; None stands for the printer's rule where ceilings sag, else for no vaults.
+def vault_choice(
+    requested: VaultChoice | None, profile: Profile, *, blocker: bool = True
+) -> VaultChoice:
+    """The choice; None stands for no vaults, or where ceilings sag for the printer's rule.
+
+    blocker : whether a support blocker is made; without one, None stands for the slicer's rule.
 
     Raises UsageError for an unknown choice, or if vaults are requested and ceilings of the process
     need none.
@@ -30,7 +34,8 @@ def vault_choice(requested: VaultChoice | None, profile: Profile) -> VaultChoice
             f"Profile {profile.name} is for {profile.process}, where ceilings need no vaults.",
             f"Leave out --vaults {requested}, or choose a profile for filament.",
         )
-    return requested or ("printer" if sag else "none")
+    by_default: VaultChoice = "printer" if blocker else "slicer"
+    return requested or (by_default if sag else "none")
 
 
 def supported(

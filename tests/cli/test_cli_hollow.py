@@ -55,7 +55,7 @@ def test_every_option_arrives(handed):
     assert handed["profile"] == load_profile("fdm-petg-0.4", overrides)
     assert handed["placement"] == Placement("in", "-y", 2.0, 3.0, 4.0)
     assert handed["options"] == FillOptions(
-        lean="12.5", resolution=96, objective="paper", base="never", vaults="slicer"
+        lean="12.5", resolution=96, objective="paper", base="never", blocker=False
     )
     assert Path("out.stl").is_file()
 
