@@ -7,8 +7,8 @@ The vaults are those of the whole hollowable volume, before any of it is filled 
 added share is a share of that volume.  Flagged area and islands follow the printer's rule word by
 word on the written part, at layer phases that the building does not all use.
 
-Every slicer prints the part three ways in the same settings: as it is, and the model with walls as
-thick and 15 % gyroid or lightning.  Then it slices the part with supports on, in every style that
+The last slicer prints the part three ways in the same settings: as it is, and the model with walls
+as thick and 15 % gyroid or lightning.  Every slicer slices the part with supports on, in every style that
 it has, at the automatic threshold and at 45° in turn: support inside the cavities, and support
 outside beside that of the same part without cavities and without a support blocker.  The file of
 --json keeps the rows, and later runs go on there.
@@ -75,11 +75,10 @@ def main() -> int:
         return measured(path, up, chosen, profile, slicers, kept)
 
     def done(row: Row) -> bool:
-        wanted = ["done_prints", *([] if chosen.no_supports else ["done_supports"])]
-        return "error" not in row and (
-            row.get("printed_g") == 0.0
-            or all(f"{slicer.name}:{key}" in row for slicer in slicers for key in wanted)
-        )
+        wanted = [f"{slicers[-1].name}:done_prints"]
+        if not chosen.no_supports:
+            wanted += [f"{slicer.name}:done_supports" for slicer in slicers]
+        return "error" not in row and all(key in row for key in wanted)
 
     def markdown(rows: list[Row]) -> str:
         return table(rows, [slicer.name for slicer in slicers])
@@ -100,7 +99,7 @@ def measured(
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for slicer in slicers:
-            if f"{slicer.name}:done_prints" not in row:
+            if slicer is slicers[-1] and f"{slicer.name}:done_prints" not in row:
                 row |= prefixed(slicer, prints(slicer, result, path, placement, folder))
             if not chosen.no_supports and f"{slicer.name}:done_supports" not in row:
                 row |= prefixed(slicer, supports(slicer, result, every=chosen.every_style))
