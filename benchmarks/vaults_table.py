@@ -8,10 +8,10 @@ added share is a share of that volume.  Flagged area and islands follow the prin
 word on the written part, at layer phases that the building does not all use.
 
 The last slicer prints the part three ways in the same settings: as it is, and the model with walls
-as thick and 15 % gyroid or lightning.  Every slicer slices the part with supports on, in every style that
-it has, at the automatic threshold and at 45° in turn: support inside the cavities, and support
-outside beside that of the same part without cavities and without a support blocker.  The file of
---json keeps the rows, and later runs go on there.
+as thick and 15 % gyroid or lightning.  Every slicer slices the part with supports on, in every
+style that it has, at the automatic threshold and at 45° in turn: support inside the cavities, and
+support outside beside that of the same part without cavities and without a support blocker.  The
+file of --json keeps the rows, and later runs go on there.
 """
 
 from __future__ import annotations
