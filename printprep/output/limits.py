@@ -174,5 +174,5 @@ def _print_settings(profile: Profile, slicer: SlicerName, infill: bool) -> Findi
         f"{program} takes the settings of the object from this file, but not those of the print. "
         f"Mass and tilt angle hold only with these settings: {'; '.join(settings)}.",
         "Enter these settings before you slice. Where the object then shows no settings of its own "
-        f"(BambuStudio drops those from other programs), enter them too: {words}.",
+        f"(BambuStudio may drop those of another program), enter them too: {words}.",
     )
