@@ -159,7 +159,7 @@ class HollowResult:
     def write(
         self, path: str | Path, slicer: SlicerName = "prusa", *, without_blocker: bool = False
     ) -> None:
-        """Write the part; the suffix chooses the format (.3mf carries PrusaSlicer's settings).
+        """Write the part; the suffix chooses the format (.3mf carries the settings of its slicer).
 
         without_blocker : also write vaults for the printer into a file that cannot carry the
             support blocker; such a part must be sliced without supports.

@@ -418,8 +418,9 @@ TOPICS = (
             ),
             Remedy(
                 "set-by-hand",
-                "`--for` names a slicer that takes only the shape from the file.",
-                "Enter the listed settings before you slice.",
+                "`--for` names a slicer that takes only the shape from the file, or only the "
+                "settings of the object and not those of the print.",
+                "Enter the listed settings before you slice (docs/slicers.md).",
             ),
             Remedy(
                 "no-blocker",
@@ -432,8 +433,8 @@ TOPICS = (
                 "vaults-for-slicer",
                 "The file cannot carry a support blocker, or the walls are too thin for one. So "
                 "the vaults are as steep as the slicer asks for, and there are more of them.",
-                "Nothing has to be done. For a lighter part, write a .3mf file for PrusaSlicer, or "
-                "use a thicker `--wall`.",
+                "Nothing has to be done. For a lighter part, write a .3mf file for PrusaSlicer, "
+                "OrcaSlicer or BambuStudio, or use a thicker `--wall`.",
             ),
             Remedy(
                 "infill-estimated",

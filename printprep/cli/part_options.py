@@ -44,8 +44,9 @@ def part_options(command: Command) -> Command:
             type=click.Choice(SLICERS),
             default="prusa",
             show_default=True,
-            help="Slicer to write for. PrusaSlicer and SuperSlicer take the settings from the "
-            "file. Other slicers take only the shape; the settings to enter by hand are listed.",
+            help="Slicer to write for. prusa: PrusaSlicer and SuperSlicer. orca: OrcaSlicer and "
+            "BambuStudio. These take the settings of the object and the support blocker from the "
+            "file; others take only the shape. The settings to enter by hand are listed.",
         ),
         profile_options,
         placement_options,

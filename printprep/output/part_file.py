@@ -44,7 +44,8 @@ class Contents:
 def write_part(contents: Contents, path: str | Path, slicer: SlicerName = "prusa") -> None:
     """Write a part in one step; the suffix chooses the format.
 
-    slicer : the slicer to write a 3MF for; only PrusaSlicer's settings can be in it.
+    slicer : the slicer to write a 3MF for; it holds settings of an object for PrusaSlicer, or for
+        OrcaSlicer and BambuStudio.
 
     Raises
     ------
@@ -79,6 +80,7 @@ def _as_3mf(contents: Contents, manifold: Manifold, slicer: SlicerName) -> bytes
     from printprep.output.colours import strokes_for
     from printprep.output.item import infill_item, solid_item
     from printprep.output.numbers import to_text
+    from printprep.output.orca_keys import orca_item
     from printprep.render.thumbnail import thumbnail_png
     from printprep.threemf.write import write_3mf
     from printprep.version import __version__
@@ -88,11 +90,13 @@ def _as_3mf(contents: Contents, manifold: Manifold, slicer: SlicerName) -> bytes
         item = infill_item(manifold, infill.ballast, name, profile, contents.paint)
     else:
         item = solid_item(manifold, name, profile, blocker=contents.blocker, paint=contents.paint)
+    if slicer == "orca":
+        item = orca_item(item)
     return write_3mf(
         [item],
         thumbnail_png=thumbnail_png(*quantized_arrays(manifold), THUMBNAIL_SIZE),
         attachments={JSON_PART: to_text(contents.figures.to_json()).encode("ascii")},
         metadata={"Title": name, "Application": f"printprep {__version__}"},
-        plain=slicer != "prusa",
+        dialect=slicer if slicer == "prusa" or slicer == "orca" else "plain",
         strokes=strokes_for(slicer),
     )

@@ -131,7 +131,8 @@ def hollow(
         their own, before anything is hollowed; "keep" leaves all of them.
     vaults : whose overhang rule the vaults keep that carry the ceilings of cavities: "printer",
         "slicer", or "none" for no vaults.  None takes the printer's if the process needs vaults.
-        Such a part is written as a 3MF for PrusaSlicer, with a support blocker.
+        Such a part is written as a 3MF for PrusaSlicer, OrcaSlicer or BambuStudio, with a support
+        blocker.
     drains : least number of drain holes in each cavity, 0 for none;  drain_diameter_mm : their
         diameter.  None takes the profile's.
     fill : a name in :data:`printprep.pipeline.fills.FILLS`: "cavity", or "infill", the profile's

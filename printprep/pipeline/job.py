@@ -90,7 +90,9 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     options = replace(job.options, blocker=job.options.blocker and carried)
     result = hollow_with(job.model, profile, job.placement, options, progress)
     file_findings = [
-        *format_findings(result.profile, job.output, job.written_for),
+        *format_findings(
+            result.profile, job.output, job.written_for, infill=result.infill is not None
+        ),
         *colour_findings(result.paint, job.output, job.written_for),
     ]
     if result.supports is not None:

@@ -15,6 +15,7 @@ from printprep.threemf.xml_text import escape
 MODEL_PART = "3D/3dmodel.model"
 THUMBNAIL_PART = "Metadata/thumbnail.png"
 CONFIG_PART = "Metadata/Slic3r_PE_model.config"
+ORCA_CONFIG_PART = "Metadata/model_settings.config"
 
 _HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 _TYPES = "http://schemas.openxmlformats.org/package/2006/content-types"

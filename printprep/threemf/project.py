@@ -16,10 +16,9 @@ from typing import Literal
 
 from printprep.errors import InputError
 from printprep.threemf.archive import Archive
-from printprep.threemf.package import CONFIG_PART
+from printprep.threemf.package import CONFIG_PART, ORCA_CONFIG_PART
 from printprep.threemf.parse import Element, parse_elements
 
-_BAMBU_PART = "Metadata/model_settings.config"
 _PRINT_CONFIG_PART = "Metadata/Slic3r_PE.config"
 _DRAIN_HOLES_PART = "Metadata/Slic3r_PE_sla_drain_holes.txt"
 _SUPPORT_POINTS_PART = "Metadata/Slic3r_PE_sla_support_points.txt"
@@ -107,7 +106,7 @@ def read_project(archive: Archive) -> Project:
             span = _span(archive, child.attributes)
             spans.setdefault(item.object_id, []).append(VolumeSpan(role, *span))
             _add_extruder(extruders, role, child.settings, item.settings)
-    for item in _items(archive, _BAMBU_PART, "part"):
+    for item in _items(archive, ORCA_CONFIG_PART, "part"):
         if item.element == "plate":
             plates.append(_plate(item, len(plates) + 1))
             continue

@@ -366,7 +366,8 @@ class _Build:
                 f"{self._archive.name} has components that contain themselves, or too many of them."
             )
         found = self._object(part, here.object_id)
-        if found.kind != _SOLID:
+        # BambuStudio and older versions of OrcaSlicer save what is not material as type "other".
+        if found.kind != _SOLID and apart is None:
             return
         with np.errstate(over="ignore", invalid="ignore"):
             matrix = np.column_stack([here.transform, [0.0, 0.0, 0.0, 1.0]]) @ outer  # row vectors

@@ -1,7 +1,8 @@
-"""Writes a 3MF that PrusaSlicer prints as intended and lib3mf reads strictly without a warning.
+"""Writes a 3MF that its slicer prints as intended and lib3mf reads strictly without a warning.
 
-One item is one object: one mesh, made of volumes one after another, each with its own range of
-vertices and triangles.  PrusaSlicer's Metadata/Slic3r_PE_model.config says what each volume is for.
+For PrusaSlicer one item is one object: one mesh, made of volumes one after another, each with its
+own range of vertices and triangles.  Metadata/Slic3r_PE_model.config says what each volume is for.
+OrcaSlicer and BambuStudio read another layout (:mod:`printprep.threemf.orca`).
 Cavities belong to the mesh of a ModelPart, as inverted shells.
 
 The file never holds a print config or a post_process key: both can carry commands that a slicer
@@ -13,14 +14,22 @@ Source: 3MF core specification 1.3; PrusaSlicer's src/libslic3r/Format/3mf.cpp f
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, get_args
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal, get_args
 
 import numpy as np
 
 from printprep.errors import UsageError
+from printprep.threemf import orca
 from printprep.threemf.item import Item, Volume, VolumeKind
-from printprep.threemf.package import CONFIG_PART, MODEL_PART, THUMBNAIL_PART, pack
+from printprep.threemf.mesh_xml import mesh_lines
+from printprep.threemf.package import (
+    CONFIG_PART,
+    MODEL_PART,
+    ORCA_CONFIG_PART,
+    THUMBNAIL_PART,
+    pack,
+)
 from printprep.threemf.painting import (
     PRUSA_STROKES,
     Painter,
@@ -28,12 +37,12 @@ from printprep.threemf.painting import (
     materials_of,
     painting_versions,
 )
-from printprep.threemf.xml_text import clean, escape, triangle_lines, vertex_lines
+from printprep.threemf.xml_text import clean, escape
 
-if TYPE_CHECKING:
-    pass
+__all__ = ["Dialect", "Item", "Volume", "VolumeKind", "write_3mf"]
 
-__all__ = ["Item", "Volume", "VolumeKind", "write_3mf"]
+Dialect = Literal["prusa", "orca", "plain"]
+"""Whose config a file holds, and in whose layout its volumes are."""
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _SLIC3R = "http://schemas.slic3r.org/3mf/2017/06"
@@ -57,14 +66,15 @@ def write_3mf(
     thumbnail_png: bytes | None = None,
     attachments: Mapping[str, bytes] | None = None,
     metadata: Mapping[str, str] | None = None,
-    plain: bool = False,
+    dialect: Dialect = "prusa",
     strokes: Mapping[str, str] = PRUSA_STROKES,
 ) -> bytes:
     """The 3MF file as bytes; the same arguments give the same bytes.
 
     attachments : part name ("Metadata/printprep.json") → content, JSON or text;
     metadata : name from the core specification ("Title", "Application", …) → text;
-    plain : leave out PrusaSlicer's config, and with it all settings;
+    dialect : the slicer's config that the settings are written in, in that slicer's own keys;
+    "plain" leaves them out;
     strokes : the attribute of a triangle for each kind of paint, none for a kind that is left out.
 
     Raises UsageError for a setting that no file for a slicer may carry, ValueError for geometry or
@@ -74,9 +84,11 @@ def write_3mf(
         raise ValueError("a 3MF needs at least one item")
     for item in items:
         _check(item)
-    parts = {MODEL_PART: _model(items, metadata or {}, strokes)}
-    if not plain:
+    parts = {MODEL_PART: _model(items, metadata or {}, strokes, dialect)}
+    if dialect == "prusa":
         parts[CONFIG_PART] = _config(items)
+    elif dialect == "orca":
+        parts[ORCA_CONFIG_PART] = orca.config(items)
     if thumbnail_png is not None:
         parts[THUMBNAIL_PART] = thumbnail_png
     for name, content in sorted((attachments or {}).items()):
@@ -127,15 +139,23 @@ def _check_settings(owner: str, settings: Mapping[str, str]) -> None:
             raise UsageError(f"{owner!r}: {key} has characters that a 3MF cannot hold.")
 
 
-def _model(items: Sequence[Item], metadata: Mapping[str, str], strokes: Mapping[str, str]) -> bytes:
+def _model(
+    items: Sequence[Item],
+    metadata: Mapping[str, str],
+    strokes: Mapping[str, str],
+    dialect: Dialect,
+) -> bytes:
     unknown = sorted(set(metadata) - set(_METADATA))
     if unknown:
         raise ValueError(f"no such 3MF metadata: {', '.join(unknown)}")
+    prusa = dialect != "orca"  # a plain file is PrusaSlicer's without its config
+    namespace = f' xmlns:slic3rpe="{_SLIC3R}"' if prusa else ""
     chunks = [
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}" xmlns:slic3rpe="{_SLIC3R}">\n'
-        ' <metadata name="slic3rpe:Version3mf">1</metadata>\n'.encode()
+        f'<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{namespace}>\n'.encode()
     ]
+    if prusa:
+        chunks.append(b' <metadata name="slic3rpe:Version3mf">1</metadata>\n')
     chunks += [
         f' <metadata name="{name}">{escape(metadata[name])}</metadata>\n'.encode()
         for name in sorted(metadata)
@@ -143,31 +163,29 @@ def _model(items: Sequence[Item], metadata: Mapping[str, str], strokes: Mapping[
     chunks += painting_versions(items, strokes)
     chunks.append(b" <resources>\n")
     materials = materials_of(items)
-    group = len(items) + 1
+    group = (len(items) if prusa else orca.object_count(items)) + 1
     chunks += material_lines(materials, group)
-    for number, item in enumerate(items, 1):
-        chunks += _object(number, item, Painter(materials, group, strokes))
+    painter = Painter(materials, group, strokes)
+    chunks += _objects(items, painter) if prusa else orca.object_lines(items, painter)
     chunks.append(b" </resources>\n <build>\n")
-    for number, item in enumerate(items, 1):
-        x, y, z = (f"{float(value):.9g}" for value in item.translation_mm)
-        move = f"1 0 0 0 1 0 0 0 1 {x} {y} {z}"
-        chunks.append(f'  <item objectid="{number}" transform="{move}"/>\n'.encode())
+    chunks += _build(items) if prusa else orca.build_lines(items)
     chunks.append(b" </build>\n</model>\n")
     return b"".join(chunks)
 
 
-def _object(number: int, item: Item, painter: Painter) -> list[bytes]:
-    default = painter.default(item)
-    head = f'  <object id="{number}" type="model" name="{escape(item.name)}"{default}>\n   <mesh>\n'
-    chunks = [head.encode(), b"    <vertices>\n"]
-    chunks += [vertex_lines(volume.vertices) for volume in item.volumes]
-    chunks.append(b"    </vertices>\n    <triangles>\n")
-    first = 0
-    for volume in item.volumes:
-        chunks.append(triangle_lines(volume.faces, first, painter.attributes(volume)))
-        first += len(volume.vertices)
-    chunks.append(b"    </triangles>\n   </mesh>\n  </object>\n")
-    return chunks
+def _objects(items: Sequence[Item], painter: Painter) -> Iterator[bytes]:
+    for number, item in enumerate(items, 1):
+        default, name = painter.default(item), escape(item.name)
+        yield f'  <object id="{number}" type="model" name="{name}"{default}>\n'.encode()
+        yield from mesh_lines(item.volumes, painter)
+        yield b"  </object>\n"
+
+
+def _build(items: Sequence[Item]) -> Iterator[bytes]:
+    for number, item in enumerate(items, 1):
+        x, y, z = (f"{float(value):.9g}" for value in item.translation_mm)
+        move = f"1 0 0 0 1 0 0 0 1 {x} {y} {z}"
+        yield f'  <item objectid="{number}" transform="{move}"/>\n'.encode()
 
 
 def _config(items: Sequence[Item]) -> bytes:

@@ -139,8 +139,9 @@ def slice_and_measure(
 ) -> tuple[Printed, tuple[str, ...]]:
     """The print of a part, and the slicer's warnings."""
     from printprep.gcode.measure import measure_sliced
+    from printprep.verify.for_prusa import file_for_prusa
 
     gcode = folder / "part.gcode"
-    sliced = program.slice(part.file, gcode, settings, load)
+    sliced = program.slice(file_for_prusa(part, folder), gcode, settings, load)
     printed = measure_sliced(gcode, program.name, cavities=part.cavities, bodies=part.bodies)
     return printed, sliced.warnings

@@ -25,7 +25,7 @@ def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("-p resin-standard", "prints without infill"),
         ("-p sls-pa12", "prints without infill"),
         ("-o out.stl", "cannot carry infill"),
-        ("--for orca", "only for PrusaSlicer"),
+        ("--for cura", "only for PrusaSlicer, OrcaSlicer and BambuStudio"),
         ("--objective paper", "makes only cavities, not infill"),
         ("--vaults=printer", "--vaults printer has no effect with infill"),
         ("--drains 2 --drain-diameter 3", "has no cavities to drain"),

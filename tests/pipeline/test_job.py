@@ -109,7 +109,7 @@ def test_a_simulation_is_part_of_the_result(job: Job):
             UsageError,
             "cannot be simulated",
         ),
-        ({"written_for": "orca", "options": FillOptions(fill="infill")}, UsageError, "orca"),
+        ({"written_for": "cura", "options": FillOptions(fill="infill")}, UsageError, "cura"),
         ({"output": Path("o.stl"), "verify": True}, UsageError, "only a 3MF"),
         ({"options": FillOptions(slicer=Path("ps"))}, UsageError, "--slicer"),
         ({"profile": "resin-standard", "written_for": "cura"}, UsageError, "cura"),
