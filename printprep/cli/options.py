@@ -258,6 +258,13 @@ def json_option(command: Command) -> Command:
     )(command)
 
 
+def force_option(command: Command) -> Command:
+    """Whether a file of the user's may be replaced."""
+    return click.option("--force", is_flag=True, help="Replace a profile of yours that is there.")(
+        command
+    )
+
+
 def quiet_option(command: Command) -> Command:
     """No progress and no summary."""
     return click.option(
