@@ -120,6 +120,58 @@ def new_command(name: str, base: str, force: bool, as_json: bool) -> None:
     click.echo(f"Edit it, then use it with --profile {name}.")
 
 
+@command.command("import", short_help="Make a profile from a slicer's settings.")
+@click.argument(
+    "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILES..."
+)
+@click.argument("name")
+@click.option(
+    "--from",
+    "base",
+    default=DEFAULT_PROFILE,
+    show_default=True,
+    metavar="NAME|FILE",
+    help="The profile that gives what the files lack.",
+)
+@click.option(
+    "--section",
+    "sections",
+    multiple=True,
+    metavar="KIND:NAME",
+    help="Section of a config bundle to take, for example 'print:0.20mm QUALITY'; needed where it "
+    "has several of one kind (print, filament, printer). Repeatable.",
+)
+@force_option
+@json_option
+def import_command(
+    files: tuple[Path, ...],
+    name: str,
+    base: str,
+    sections: tuple[str, ...],
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Make profile NAME, one of your own, from your settings in a slicer.
+
+    FILES is an .ini of PrusaSlicer or SuperSlicer (File > Export > Export Config, or a config
+    bundle), or JSON of OrcaSlicer or Bambu Studio: process, filament and machine, one or several.
+    Layers, line width, nozzle, bed and material are taken from them; it is listed what was.
+    """
+    from printprep.cli.console import print_json, stdout_console
+    from printprep.profile_folders import user_profile_path
+    from printprep.profile_import.run import import_profile
+    from printprep.profile_new import check_may_write, write_user_profile
+    from printprep.report.profiles import import_json, show_import
+
+    check_may_write(user_profile_path(name), replace=force)
+    done = import_profile(name, files, base, sections)
+    path = write_user_profile(name, done.text, replace=force)
+    if as_json:
+        print_json(import_json(done, path))
+    else:
+        show_import(stdout_console(), done, path)
+
+
 def _list(as_json: bool) -> None:
     from printprep.cli.console import print_json, stdout_console
     from printprep.profile_folders import user_folder
