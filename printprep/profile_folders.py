@@ -6,12 +6,11 @@ The user's own are TOML files in one folder: that of the variable PRINTPREP_PROF
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 
 from printprep.errors import UsageError
-from printprep.wording import shortened
+from printprep.wording import did_you_mean, shortened
 
 DEFAULT_PROFILE = "fdm-pla-0.4"
 FOLDER_VARIABLE = "PRINTPREP_PROFILES"
@@ -105,8 +104,7 @@ def find_profile(name: str | Path) -> Path:
     if path.suffix == ".toml" or len(path.parts) > 1:
         raise UsageError(f"The profile file {name} does not exist.", "Check the name.")
     known = (*shipped, *own)
-    close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f"Did you mean {close[0]}?" if close else f"Use one of {', '.join(known)}."
+    hint = did_you_mean(str(name), known) or f"Use one of {', '.join(known)}."
     raise UsageError(f"There is no profile named {name}.", hint)
 
 

@@ -10,9 +10,9 @@ This module imports pydantic: import it inside the function that needs it, not a
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -27,7 +27,7 @@ from printprep.profile_folders import (
     user_profile_names,
 )
 from printprep.profile_schema import Profile
-from printprep.wording import shortened
+from printprep.wording import nearest, shortened
 
 __all__ = [
     "DEFAULT_PROFILE",
@@ -133,8 +133,9 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
     lines = [f"{shortened(key)} {fact}" for key, fact in facts.items()]
     if len(lines) > _FACTS_MAX:
         lines[_FACTS_MAX:] = [f"and {len(lines) - _FACTS_MAX} more"]
+    message = f"{source}: {'; '.join(lines)}"
     return UsageError(
-        f"{source}: {'; '.join(lines)}.",
+        message if message.endswith("?") else f"{message}.",
         "`printprep profiles show NAME` shows every key in use.",
     )
 
@@ -147,6 +148,9 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""
     if kind == "extra_forbidden" and owner:
+        close = _nearest_key(path)
+        if close is not None:
+            return f"is unknown; did you mean {close}?"
         keys = ", ".join(key for key in owner.model_fields if key != "name" or owner is not Profile)
         return f"is unknown; allowed here: {keys}"
     if kind == "missing" and isinstance(item["loc"][-1], str):
@@ -154,6 +158,31 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
     if not isinstance(item["loc"][-1], str):
         return allowed or _must_be(item["msg"])
     return f"is {_shown(item['input'])}, {allowed or _must_be(item['msg'])}"
+
+
+def _nearest_key(path: tuple[str, ...]) -> str | None:
+    """The key that was probably meant, in the same table if it has one of about that name."""
+    keys = tuple(_keys_below(Profile))
+    last = {key: key.rpartition(".")[2] for key in keys}
+    table = ".".join(path[:-1])
+    here = [key for key in keys if key.rpartition(".")[0] == table]
+    same = [key for key in keys if last[key] == path[-1]]
+    for some in (here, same, keys):
+        close = nearest(path[-1], [last[key] for key in some])
+        if close is not None:
+            return next(key for key in some if last[key] == close)
+    return None
+
+
+def _keys_below(model: type[BaseModel], above: str = "") -> Iterator[str]:
+    """All keys of a profile, a key in a table as "table.key"; the tables too."""
+    for name in model.model_fields:
+        if model is Profile and name == "name":
+            continue
+        yield above + name
+        inner = _model_at((*above.split(".")[:-1], name))
+        if inner is not None:
+            yield from _keys_below(inner, f"{above}{name}.")
 
 
 def _shown(value: object) -> str:
@@ -174,8 +203,9 @@ def _model_at(path: tuple[str, ...]) -> type[BaseModel] | None:
     model: type[BaseModel] | None = Profile
     for part in path:
         field = model.model_fields.get(part) if model else None
-        inner = field.annotation if field else None
-        model = inner if isinstance(inner, type) and issubclass(inner, BaseModel) else None
+        kinds = (field.annotation, *get_args(field.annotation)) if field else ()
+        inner = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
+        model = inner[0] if inner else None
     return model
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from printprep.cli.group import LazyGroup
 from printprep.cli.options import (
     DEFAULT_PROFILE,
     force_option,
@@ -17,7 +18,12 @@ from printprep.cli.options import (
 from printprep.errors import UsageError
 
 
-@click.group("profiles", short_help="List, show or make profiles.", invoke_without_command=True)
+@click.group(
+    "profiles",
+    cls=LazyGroup,
+    short_help="List, show or make profiles.",
+    invoke_without_command=True,
+)
 @json_option
 @click.pass_context
 def command(ctx: click.Context, as_json: bool) -> None:

@@ -6,14 +6,13 @@ A config is lines ``key = value``.  A bundle has sections ``[print:NAME]``, ``[f
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping, Sequence
 
 from printprep.errors import InputError, UsageError
 from printprep.profile_import.dialects import PRUSA, SUPER
 from printprep.profile_import.settings import Setting, Settings
-from printprep.wording import shortened
+from printprep.wording import did_you_mean, shortened
 
 KINDS = ("print", "filament", "printer")
 _SECTION = re.compile(r"\[(.*)\]")
@@ -77,8 +76,7 @@ def _chosen(named: Sequence[str], file: str, chosen: Sequence[str]) -> list[str]
     """One section of each kind that the bundle has."""
     for name in chosen:
         if name not in named:
-            close = difflib.get_close_matches(name, named, n=1)
-            hint = f"Did you mean {close[0]}?" if close else f"It has {_listed(named)}."
+            hint = did_you_mean(name, named) or f"It has {_listed(named)}."
             raise UsageError(f"{file} has no section {name}.", hint)
     taken = []
     for kind in KINDS:
