@@ -86,7 +86,7 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     from printprep.verify.unwritten import verify_result
 
     profile = check_job(job)
-    options = replace(job.options, vaults=_vaults(job, profile))
+    options = replace(job.options, vaults=vaults_of(job, profile))
     result = hollow_with(job.model, profile, job.placement, options, progress)
     file_findings = [
         *format_findings(result.profile, job.output, job.written_for),
@@ -119,7 +119,7 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     return JobResult(result, findings, verified, job.output, plugs)
 
 
-def _vaults(job: Job, profile: Profile) -> VaultChoice | None:
+def vaults_of(job: Job, profile: Profile) -> VaultChoice | None:
     """The vaults of a job: for the slicer where its file cannot carry a support blocker."""
     from printprep.output.limits import carries_blocker
 
