@@ -9,40 +9,42 @@ This module imports pydantic: import it inside the function that needs it, not a
 
 from __future__ import annotations
 
-import difflib
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from printprep.errors import InputError, UsageError
 from printprep.input_file import read_plain_file
+from printprep.profile_folders import (
+    DEFAULT_PROFILE,
+    find_profile,
+    profile_names,
+    shipped_folder,
+    user_folder,
+    user_profile_names,
+)
 from printprep.profile_schema import Profile
-from printprep.wording import shortened
+from printprep.wording import nearest, shortened
 
-__all__ = ["DEFAULT_PROFILE", "Profile", "load_profile", "profile_names", "profile_source"]
+__all__ = [
+    "DEFAULT_PROFILE",
+    "Profile",
+    "load_profile",
+    "profile_names",
+    "profile_source",
+    "user_profile_names",
+]
 
-DEFAULT_PROFILE = "fdm-pla-0.4"
 _PROFILE_BYTES_MAX = 1 << 20
 _FACTS_MAX = 8
-
-_FOLDERS = (
-    Path(__file__).resolve().parent / "_profiles",  # inside an installed wheel
-    Path(__file__).resolve().parent.parent / "profiles",  # in a checkout
-)
-
-
-def profile_names() -> tuple[str, ...]:
-    """Names of the profiles that come with printprep, sorted, the default first."""
-    names = sorted(path.stem for path in _folder().glob("*.toml"))
-    return tuple(sorted(names, key=lambda name: name != DEFAULT_PROFILE))
 
 
 def profile_source(name: str | Path) -> str:
     """TOML text of a profile, comments and sources included; `name` as for load_profile."""
-    path = _find(name)
+    path = find_profile(name)
     try:
         # A mark of the byte order, as some editors write one, is no part of the text.
         return read_plain_file(path, _PROFILE_BYTES_MAX).decode("utf-8-sig")
@@ -66,8 +68,8 @@ def load_profile(
     if isinstance(name_or_path, Profile):
         source, data = f"Profile {name_or_path.name}", name_or_path.model_dump()
     else:
-        path = _find(name_or_path)
-        source = str(name_or_path) if path.parent != _folder() else f"Profile {path.stem}"
+        path = find_profile(name_or_path)
+        source = _called(path, name_or_path)
         data = _parsed(profile_source(name_or_path), source)
         if "name" in data:
             raise UsageError(
@@ -96,32 +98,11 @@ def _parsed(text: str, source: str) -> dict[str, Any]:
         raise UsageError(f"{source} is not valid TOML: {shortened(str(error), 200)}.") from error
 
 
-def _folder() -> Path:
-    for folder in _FOLDERS:
-        if folder.is_dir():
-            return folder
-    raise UsageError("The profiles that come with printprep are missing.", "Install it again.")
-
-
-def _find(name: str | Path) -> Path:
-    known = profile_names()
-    if isinstance(name, str) and name in known:
-        return _folder() / f"{name}.toml"
-    path = Path(name)
-    if _is_there(path):
-        return path
-    if path.suffix == ".toml" or len(path.parts) > 1:
-        raise UsageError(f"The profile file {name} does not exist.")
-    close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f"Did you mean {close[0]}?" if close else f"Use one of {', '.join(known)}."
-    raise UsageError(f"There is no profile named {name}.", hint)
-
-
-def _is_there(path: Path) -> bool:
-    try:
-        return path.exists() and not path.is_dir()
-    except (OSError, ValueError):  # a name that no file can have
-        return False
+def _called(path: Path, name: str | Path) -> str:
+    """What messages call a profile: by its name where it has one, the user's own with its file."""
+    if path.parent == shipped_folder():
+        return f"Profile {path.stem}"
+    return f"Profile {path.stem} ({path})" if path.parent == user_folder() else str(name)
 
 
 def _override(data: dict[str, Any], key: str, value: object) -> None:
@@ -152,8 +133,9 @@ def _explain(error: ValidationError, source: str, overrides: Mapping[str, object
     lines = [f"{shortened(key)} {fact}" for key, fact in facts.items()]
     if len(lines) > _FACTS_MAX:
         lines[_FACTS_MAX:] = [f"and {len(lines) - _FACTS_MAX} more"]
+    message = f"{source}: {'; '.join(lines)}"
     return UsageError(
-        f"{source}: {'; '.join(lines)}.",
+        message if message.endswith("?") else f"{message}.",
         "`printprep profiles show NAME` shows every key in use.",
     )
 
@@ -166,6 +148,9 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
     owner = _model_at(path[:-1])
     allowed = _allowed(owner, path[-1]) if owner else ""
     if kind == "extra_forbidden" and owner:
+        close = _nearest_key(path)
+        if close is not None:
+            return f"is unknown; did you mean {close}?"
         keys = ", ".join(key for key in owner.model_fields if key != "name" or owner is not Profile)
         return f"is unknown; allowed here: {keys}"
     if kind == "missing" and isinstance(item["loc"][-1], str):
@@ -173,6 +158,31 @@ def _fact(kind: str, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
     if not isinstance(item["loc"][-1], str):
         return allowed or _must_be(item["msg"])
     return f"is {_shown(item['input'])}, {allowed or _must_be(item['msg'])}"
+
+
+def _nearest_key(path: tuple[str, ...]) -> str | None:
+    """The key that was probably meant, in the same table if it has one of about that name."""
+    keys = tuple(_keys_below(Profile))
+    last = {key: key.rpartition(".")[2] for key in keys}
+    table = ".".join(path[:-1])
+    here = [key for key in keys if key.rpartition(".")[0] == table]
+    same = [key for key in keys if last[key] == path[-1]]
+    for some in (here, same, keys):
+        close = nearest(path[-1], [last[key] for key in some])
+        if close is not None:
+            return next(key for key in some if last[key] == close)
+    return None
+
+
+def _keys_below(model: type[BaseModel], above: str = "") -> Iterator[str]:
+    """All keys of a profile, a key in a table as "table.key"; the tables too."""
+    for name in model.model_fields:
+        if model is Profile and name == "name":
+            continue
+        yield above + name
+        inner = _model_at((*above.split(".")[:-1], name))
+        if inner is not None:
+            yield from _keys_below(inner, f"{above}{name}.")
 
 
 def _shown(value: object) -> str:
@@ -193,8 +203,9 @@ def _model_at(path: tuple[str, ...]) -> type[BaseModel] | None:
     model: type[BaseModel] | None = Profile
     for part in path:
         field = model.model_fields.get(part) if model else None
-        inner = field.annotation if field else None
-        model = inner if isinstance(inner, type) and issubclass(inner, BaseModel) else None
+        kinds = (field.annotation, *get_args(field.annotation)) if field else ()
+        inner = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
+        model = inner[0] if inner else None
     return model
 
 

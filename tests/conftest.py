@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -24,6 +25,14 @@ settings.load_profile("default")
 
 ROOT = Path(__file__).resolve().parent.parent
 MODELS = Path(os.environ.get("PRINTPREP_MODELS", ROOT.parent / "shared" / "models"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_profiles_of_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The tests, and the commands that they start, see no profiles of whoever runs them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PRINTPREP_PROFILES", str(tmp_path_factory.mktemp("profiles")))
+        yield
 
 
 def _required() -> bool:

@@ -33,9 +33,10 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.cavity", "printprep.gcode", "printprep.render"),
     ("printprep.overhang", "printprep.thickness", "printprep.stand", "printprep.grid"),
     ("printprep.mesh", "printprep.slicer"),
+    ("printprep.profile_import", "printprep.profile_new"),
     ("printprep.threemf", "printprep.profiles", "printprep.bgcode"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
-    ("printprep.input_file",),
+    ("printprep.input_file", "printprep.profile_folders"),
     (
         "printprep.arrays",
         "printprep.children",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from printprep.errors import PrintprepError, UsageError
 if TYPE_CHECKING:
     from distributed import Client
 
+    from printprep.pipeline.dry_run import DryRun
     from printprep.pipeline.job import Job
     from printprep.profiles import Profile
 
@@ -83,14 +85,19 @@ def batch(
     yield from run_batch(planned, how, client)
 
 
-def plan(items: Sequence[Item], folder: Path, *, resume: bool) -> Planned:
+def plan(items: Sequence[Item], folder: Path, *, resume: bool, dry: bool = False) -> Planned:
     """Check all of a batch before its first model starts.
+
+    dry : do not make the folder.
 
     Raises UsageError for options or names that cannot be, OutputError for a folder that refuses.
     """
     refuse_clashes(items)
     items = with_profiles(items)
-    _make_folder(folder)
+    if dry:
+        _check_folder(folder)
+    else:
+        _make_folder(folder)
     if not resume:
         if (folder / NAME).exists():
             raise UsageError(
@@ -106,6 +113,18 @@ def plan(items: Sequence[Item], folder: Path, *, resume: bool) -> Planned:
         tuple(item for item in items if item.output not in complete),
         tuple(rows[item.output] for item in items if item.output in complete),
     )
+
+
+def dry_run_batch(planned: Planned) -> Iterator[tuple[Item, DryRun | PrintprepError]]:
+    """What is left of a batch, each model read and placed, or why it is refused; see ``plan``."""
+    from printprep.pipeline.dry_run import dry_run
+
+    for item in planned.left:
+        try:
+            # Folders of parts are made when those are written: a new one holds nothing in the way
+            yield item, dry_run(item.job, into_new_folder=not item.job.output.parent.exists())
+        except PrintprepError as error:
+            yield item, error
 
 
 def with_profiles(items: Sequence[Item]) -> tuple[Item, ...]:
@@ -178,6 +197,18 @@ def _with_output(item: Item, told: Told, folder: Path) -> Told:
     target.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(target, told.output)
     return replace(told, output=None)
+
+
+def _check_folder(folder: Path) -> None:
+    """Raise OutputError where ``_make_folder`` would, or where nothing can be written into it."""
+    from printprep.errors import OutputError
+
+    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not (there.is_dir() and os.access(there, os.W_OK | os.X_OK)):
+        what = "is not writable" if there.is_dir() else "is no folder"
+        raise OutputError(
+            f"{folder} cannot be made a folder: {there} {what}.", "Name another folder with -o."
+        )
 
 
 def _make_folder(folder: Path) -> None:

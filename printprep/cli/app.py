@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from importlib import import_module
-from typing import Any
-
 import click
 
+from printprep.cli.group import LazyGroup
 from printprep.version import __version__
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 80}
@@ -44,27 +41,6 @@ Examples:
   printprep check out.3mf --json
   printprep profiles show fdm-pla-0.4
 """
-
-
-class LazyGroup(click.Group):
-    """A group whose commands are in modules that are imported only when needed.
-
-    lazy : command name → module that holds the command as ``command``; in the order of --help.
-    """
-
-    def __init__(self, *args: Any, lazy: Mapping[str, str], **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._lazy = dict(lazy)
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        return [*self._lazy, *super().list_commands(ctx)]
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        module = self._lazy.get(cmd_name)
-        if module is None:
-            return super().get_command(ctx, cmd_name)
-        command: click.Command = import_module(module).command
-        return command
 
 
 @click.group(

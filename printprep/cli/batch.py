@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.options import fail_on_option, json_option, quiet_option
+from printprep.cli.options import dry_run_option, fail_on_option, json_option, quiet_option
 from printprep.cli.part_options import job_of, part_options
 from printprep.errors import UsageError
 
 if TYPE_CHECKING:
     from printprep.batches.item import Item
-    from printprep.batches.run import Planned
 
 _EPILOG = """\b
 Examples:
@@ -96,6 +95,7 @@ A CSV has a column `file`, and any option above as a column:
     is_flag=True,
     help="Go on with an earlier batch: skip what is complete and unchanged.",
 )
+@dry_run_option
 @fail_on_option("none", " Such a part is not written, and its row says so.")
 @json_option
 @quiet_option
@@ -111,6 +111,7 @@ def command(
     scheduler: str | None,
     transfer: bool,
     resume: bool,
+    dry_run: bool,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -124,7 +125,7 @@ def command(
     """
     from printprep.batches.cluster import connect
     from printprep.batches.item import with_plugs, with_report
-    from printprep.batches.run import BatchOptions, plan, run_batch
+    from printprep.batches.run import BatchOptions, dry_run_batch, plan, run_batch
     from printprep.batches.summary import write_summary
     from printprep.report.batch import follow
 
@@ -139,9 +140,14 @@ def command(
         items = [with_plugs(item) for item in items]
     if reports:
         items = [with_report(item) for item in items]
+    if dry_run:
+        from printprep.report.dry_run import follow_dry_run
+
+        planned = plan(items, output, resume=resume, dry=True)
+        return 1 if follow_dry_run(dry_run_batch(planned), as_json=as_json, quiet=quiet) else 0
     how = BatchOptions(workers, memory_mib, timeout_s, resume, transfer)
     client = None if scheduler is None else connect(scheduler)
-    planned: Planned = plan(items, output, resume=resume)
+    planned = plan(items, output, resume=resume)
     rows = follow(planned, run_batch(planned, how, client), as_json=as_json, quiet=quiet)
     write_summary(planned, rows)
     return 0 if all(row.status == "part" for row in rows) else 1

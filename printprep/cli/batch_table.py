@@ -7,7 +7,6 @@ and refuses what they refuse.  An empty cell leaves the batch's own option.
 from __future__ import annotations
 
 import csv
-import difflib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from printprep.batches.item import SUFFIXES, Item, item_of
 from printprep.cli.part_options import job_of, part_options
 from printprep.errors import InputError, UsageError
 from printprep.input_file import check_plain_file
-from printprep.wording import shortened
+from printprep.wording import did_you_mean, shortened
 
 FILE, OUTPUT = "file", "output"
 _YES, _NO = ("yes", "true", "1"), ("no", "false", "0")
@@ -88,9 +87,8 @@ def _check_columns(table: Path, columns: list[str]) -> None:
         if columns.count(name) > 1:
             raise UsageError(f"{table} has the column {shortened(name)} twice.", "Keep one.")
         if name not in (FILE, OUTPUT, *options):
-            close = difflib.get_close_matches(name, (FILE, OUTPUT, *options), n=1)
-            known = ", ".join((FILE, OUTPUT, *options))
-            hint = f"Did you mean {close[0]}?" if close else f"Columns are {known}."
+            known = (FILE, OUTPUT, *options)
+            hint = did_you_mean(name, known) or f"Columns are {', '.join(known)}."
             what = f"{shortened(name)} is not an option of `printprep hollow`"
             raise UsageError(f"{table}: {what}.", hint)
 

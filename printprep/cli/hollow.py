@@ -8,11 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from printprep.cli.options import model_argument, output_form_options, path_option
+from printprep.cli.options import (
+    dry_run_option,
+    model_argument,
+    output_form_options,
+    path_option,
+)
 from printprep.cli.part_options import job_of, part_options
 
 if TYPE_CHECKING:
-    from printprep.pipeline.job import JobResult
+    from printprep.pipeline.job import Job, JobResult
+    from printprep.progress import Progress
 
 _EPILOG = """\b
 Examples:
@@ -46,12 +52,14 @@ Examples:
     help="Also write a page about the part: one file that shows it in three dimensions, opened "
     "along any plane, with all figures and findings. It needs no network.",
 )
+@dry_run_option
 @output_form_options("none", " The part is then not written.")
 def command(
     model: Path,
     output: Path | None,
     plugs: Path | None,
     report: Path | None,
+    dry_run: bool,
     fail_on: str,
     as_json: bool,
     quiet: bool,
@@ -73,12 +81,27 @@ def command(
     job = job_of(options, model=model, output=target, plugs=plugs, fail_on=fail_on)
     job = replace(job, report=report)
     progress = for_terminal(quiet=quiet)
+    if dry_run:
+        _print_dry_run(job, progress, as_json=as_json, quiet=quiet)
+        return 0
     done = run_job(job, progress)
     if report is not None:
         with progress.stage("page"):
             write_report(done, job, shown_command())
     _print(done, model, report, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if done.stopped else 0
+
+
+def _print_dry_run(job: Job, progress: Progress, *, as_json: bool, quiet: bool) -> None:
+    from printprep.cli.console import print_json, stdout_console
+    from printprep.pipeline.dry_run import dry_run
+    from printprep.report.dry_run import dry_run_json, show_dry_run
+
+    planned = dry_run(job, progress)
+    if as_json:
+        print_json(dry_run_json(planned))
+    elif not quiet:
+        show_dry_run(stdout_console(), planned)
 
 
 def _print(

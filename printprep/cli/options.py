@@ -258,6 +258,23 @@ def json_option(command: Command) -> Command:
     )(command)
 
 
+def dry_run_option(command: Command) -> Command:
+    """Say what would be done, and do nothing."""
+    return click.option(
+        "--dry-run",
+        is_flag=True,
+        help="Check options and files, read and place the model, and print what would be done. "
+        "Nothing is hollowed or written.",
+    )(command)
+
+
+def force_option(command: Command) -> Command:
+    """Whether a file of the user's may be replaced."""
+    return click.option("--force", is_flag=True, help="Replace a profile of yours that is there.")(
+        command
+    )
+
+
 def quiet_option(command: Command) -> Command:
     """No progress and no summary."""
     return click.option(

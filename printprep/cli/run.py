@@ -18,7 +18,7 @@ import click
 from printprep.cli.signals import sentence_of
 from printprep.cli.streams import StreamError, guard_streams
 from printprep.errors import InputError, OutputError, PrintprepError, UsageError
-from printprep.wording import printable
+from printprep.wording import did_you_mean, printable
 
 _INTERRUPTED = 130
 _DEFECT = 70
@@ -135,6 +135,10 @@ def _out_of_memory(as_json: bool) -> int:
 def _usage(error: click.ClickException) -> tuple[str, str | None]:
     context = getattr(error, "ctx", None)
     hint = None if context is None else f"`{context.command_path} --help` shows the usage."
+    if isinstance(error, click.NoSuchOption) and context is not None:
+        options = [name for item in context.command.get_params(context) for name in item.opts]
+        close = did_you_mean(error.option_name, [name for name in options if name[:2] == "--"])
+        return f"There is no option {error.option_name}.", f"{close} {hint}" if close else hint
     return error.format_message(), hint
 
 

@@ -19,7 +19,7 @@ from printprep.progress import SILENT, Progress
 if TYPE_CHECKING:
     from printprep.profiles import Profile
     from printprep.result import HollowResult
-    from printprep.types import Drainage, Finding, Severity, SlicerName
+    from printprep.types import Drainage, Finding, Severity, SlicerName, VaultChoice
     from printprep.verify.run import Verified
 
 
@@ -120,6 +120,15 @@ def run_job(job: Job, progress: Progress = SILENT) -> JobResult:
     with progress.stage("write"):
         plugs = _write(job, result)
     return JobResult(result, findings, verified, job.output, plugs)
+
+
+def vaults_of(job: Job, profile: Profile) -> VaultChoice:
+    """The vaults that a job builds: for the slicer where its file carries no support blocker."""
+    from printprep.output.limits import carries_blocker
+    from printprep.supports.policy import vault_choice
+
+    carried = carries_blocker(job.output.suffix, job.written_for)
+    return vault_choice(job.options.vaults, profile, blocker=job.options.blocker and carried)
 
 
 def check_job(job: Job) -> Profile:

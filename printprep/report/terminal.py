@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from printprep.pipeline.check import Checked
     from printprep.pipeline.simulate import Simulated
-    from printprep.profiles import Profile
     from printprep.result import HollowResult
     from printprep.types import AlternativeFill, Drainage, Finding, Infill, Repair
 
@@ -132,25 +131,6 @@ def show_simulation(console: Console, found: Simulated, *, verbose: bool) -> Non
         console.print()
         console.print(azimuth_table(found.simulation))
     show_findings(console, found.findings)
-
-
-def show_profiles(console: Console, profiles: Sequence[Profile]) -> None:
-    """Print a row for each profile, the default first."""
-    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
-    for head in ("name", "process", "material", "wall", "layer", "bed, mm"):
-        table.add_column(head, no_wrap=True)
-    for item in profiles:
-        bed = " × ".join(f"{side:g}" for side in item.printer.bed_mm)
-        table.add_row(
-            item.name,
-            item.process,
-            item.material.name,
-            f"{item.wall_mm:g}",
-            f"{item.printer.layer_height_mm:g}",
-            bed,
-        )
-    console.print(table)
-    console.print("\n`printprep profiles show NAME` shows the source of each figure.")
 
 
 def show_findings(
