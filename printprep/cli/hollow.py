@@ -88,7 +88,7 @@ def command(
     if report is not None:
         with progress.stage("page"):
             write_report(done, job, shown_command())
-    _print(done, model, report, as_json=as_json, quiet=quiet, verbose=verbose)
+    _print(done, job, report, as_json=as_json, quiet=quiet, verbose=verbose)
     return 1 if done.stopped else 0
 
 
@@ -106,7 +106,7 @@ def _print_dry_run(job: Job, progress: Progress, *, as_json: bool, quiet: bool) 
 
 def _print(
     done: JobResult,
-    model: Path,
+    job: Job,
     report: Path | None,
     *,
     as_json: bool,
@@ -121,7 +121,7 @@ def _print(
     output = None if done.written is None else str(done.written)
     report_file = None if report is None else str(report)
     if as_json:
-        data = result_json(done.result, done.findings, model=str(model), output=output)
+        data = result_json(done.result, done.findings, model=str(job.model), output=output)
         if done.verified is not None:
             data["verified"] = verify_json(done.verified, part=output)
         if report_file is not None:
@@ -131,7 +131,14 @@ def _print(
         trouble_to_stderr(done.findings)
     else:
         console = stdout_console()
-        show_result(console, done.result, done.findings, output=output, verbose=verbose)
+        show_result(
+            console,
+            done.result,
+            done.findings,
+            output=output,
+            written_for=job.written_for,
+            verbose=verbose,
+        )
         if done.verified is not None:
             console.print()
             show_verified(console, done.verified, with_findings=False)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from printprep.pipeline.check import Checked
     from printprep.pipeline.simulate import Simulated
     from printprep.result import HollowResult
-    from printprep.types import AlternativeFill, Drainage, Finding, Infill, Repair
+    from printprep.types import AlternativeFill, Drainage, Finding, Infill, Repair, SlicerName
 
 _STYLE = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 # Rules whose information is in the table already.
@@ -36,6 +36,7 @@ def show_result(
     findings: Sequence[Finding] | None = None,
     *,
     output: str | None,
+    written_for: SlicerName = "prusa",
     verbose: bool,
 ) -> None:
     """Print the summary of ``hollow``: what changed, the findings, and where the file is."""
@@ -88,7 +89,7 @@ def show_result(
         console.print("Not written: a finding reached the --fail-on level.")
         return
     console.print(Text.assemble("Written: ", (output, "bold")), soft_wrap=True)
-    for sentence in _advice(result, output):
+    for sentence in _advice(result, output, written_for):
         console.print(Text(sentence))
 
 
@@ -262,7 +263,7 @@ def _add_repair(facts: Table, repair: Repair) -> None:
     facts.add_row("repair", f"{actions}; {moved}")
 
 
-def _advice(result: HollowResult, output: str) -> list[str]:
+def _advice(result: HollowResult, output: str, written_for: SlicerName) -> list[str]:
     """How to print it: the settings that the file cannot carry."""
     profile = result.profile
     if not profile.traits.has_nozzle:
@@ -273,7 +274,7 @@ def _advice(result: HollowResult, output: str) -> list[str]:
         f"nozzle and {profile.material.name}: a model file cannot carry these "
         f"(`printprep profiles export {profile.name}` writes them for PrusaSlicer)."
     ]
-    if result.blocker is not None and output.lower().endswith(".3mf"):
+    if result.blocker is not None and written_for == "prusa":
         advice.append(
             "The file keeps PrusaSlicer's supports out of the cavities. Other slicers do not read "
             "that: for them, write the part with --for."
