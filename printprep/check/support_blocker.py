@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.types import Finding
@@ -21,6 +23,8 @@ AREA_MM2 = 0.5
 # A blocker that comes so near to the outside of a part may cover an overhang there; simplification
 # and rounding of the outside stay below it.
 SLACK_MM = 0.02
+# More air in a blocker than this, beside sealed cavities, is an open cavity or the outside.
+OPEN_MM3 = 0.5
 
 
 @rule("support-blocker")
@@ -29,11 +33,12 @@ def support_blocker(context: CheckContext, profile: Profile) -> Iterator[Finding
     too large.
 
     Ceilings that the slicer supports must lie in the blocker, layer by layer.  Overhangs outside
-    lie no deeper in the part than a layer, so the blocker must lie deeper.
+    lie no deeper in the part than a layer, so the blocker must lie deeper.  A cavity with drain
+    holes is open to the outside: of a blocker around one, only the bounds are judged.
     """
     if context.blocker is None or not profile.traits.ceilings_sag:
         return
-    from printprep.supports.blocker import depth_mm, tallest_step_mm
+    from printprep.supports.blocker import tallest_step_mm
 
     bare = _uncovered(context, profile)
     if bare:
@@ -47,7 +52,7 @@ def support_blocker(context: CheckContext, profile: Profile) -> Iterator[Finding
             limit=AREA_MM2,
             at_mm=max(bare, key=lambda patch: patch.area_mm2).at_mm,
         )
-    least_mm, at_mm = depth_mm(context.blocker, context.outside)
+    least_mm, at_mm = _least_depth_mm(context)
     if least_mm < tallest_step_mm(profile) - SLACK_MM:
         yield finding(
             "support-blocker",
@@ -56,6 +61,17 @@ def support_blocker(context: CheckContext, profile: Profile) -> Iterator[Finding
             "Hollow the model again.",
             at_mm=at_mm,
         )
+
+
+def _least_depth_mm(context: CheckContext) -> tuple[float, tuple[float, float, float] | None]:
+    """How deep the blocker lies below the outside, and where it comes nearest, as far as known."""
+    from printprep.supports.blocker import depth_mm
+
+    assert context.blocker is not None
+    if (context.blocker - context.outside).volume() < OPEN_MM3:
+        return depth_mm(context.blocker, context.outside)
+    own, whole = (np.reshape(m.bounding_box(), (2, 3)) for m in (context.blocker, context.part))
+    return float(min((own[0] - whole[0]).min(), (whole[1] - own[1]).min())), None
 
 
 def _uncovered(context: CheckContext, profile: Profile) -> list[Flagged]:

@@ -29,6 +29,13 @@ def test_a_blocker_as_large_as_the_part_covers_overhangs_outside(fdm):
     assert "outside" in finding.message
 
 
+def test_a_blocker_around_an_open_cavity_is_judged_by_its_bounds(fdm):
+    part = hollow_box(20, 2) - box(3, 6, z=-1)
+    assert not list(support_blocker(context(part, blocker=box(18, z=1) - box(4, 6, z=-1)), fdm))
+    (finding,) = support_blocker(context(part, blocker=box(20)), fdm)
+    assert "outside" in finding.message
+
+
 def test_without_a_blocker_or_without_filament_there_is_nothing_to_say(fdm, resin):
     assert not list(support_blocker(context(hollow_box(20, 2)), fdm))
     assert not list(support_blocker(context(hollow_box(20, 2), blocker=box(20)), resin))
