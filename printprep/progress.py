@@ -7,6 +7,7 @@ The code of a stage runs inside ``progress.stage(name)``, with a name from ``STA
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -61,6 +62,9 @@ STAGES: Mapping[Stage, str] = MappingProxyType(
 )
 
 
+SHOWN_AFTER_S = 1.0
+
+
 class Progress(Protocol):
     """Receives the stages of a run."""
 
@@ -78,17 +82,35 @@ class Silent:
 
 
 class Spinner:
-    """Shows one moving line on stderr while a stage runs, and removes it afterwards."""
+    """Shows one moving line on stderr while a stage runs, and removes it afterwards.
 
-    def __init__(self) -> None:
+    after_s : the line is shown once the run has taken so many seconds: what is done at once says
+        nothing.
+    """
+
+    def __init__(self, after_s: float = SHOWN_AFTER_S) -> None:
         from rich.console import Console
 
         self._console = Console(stderr=True)
+        self._due = time.monotonic() + after_s
 
     @contextmanager
     def stage(self, name: Stage) -> Iterator[None]:
-        with self._console.status(f"{STAGES[name]} …"):
+        status = self._console.status(f"{STAGES[name]} …")
+        wait_s = self._due - time.monotonic()
+        if wait_s <= 0:
+            with status:
+                yield
+            return
+        timer = threading.Timer(wait_s, status.start)
+        timer.daemon = True
+        timer.start()
+        try:
             yield
+        finally:
+            timer.cancel()
+            timer.join()  # it may just be starting the line
+            status.stop()
 
 
 SILENT: Progress = Silent()

@@ -21,6 +21,7 @@ _COMMANDS = {
     "simulate": "printprep.cli.simulate",
     "evaluate": "printprep.cli.evaluate",
     "profiles": "printprep.cli.profiles",
+    "completion": "printprep.cli.completion",
 }
 
 _EPILOG = """\b

@@ -13,6 +13,8 @@ from printprep.pipeline.options import Placement
 from printprep.types import VAULT_CHOICES
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from printprep.types import Finding, Severity
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -154,6 +156,23 @@ def vaults_option(command: Command) -> Command:
     )(command)
 
 
+def complete_profile(
+    ctx: click.Context, parameter: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """What a shell completes a profile to: names that begin so, and files.
+
+    The files come first: click's script for bash forgets what came before them.
+    """
+    from click.shell_completion import CompletionItem
+
+    from printprep.profile_folders import profile_names, user_profile_names
+
+    del ctx, parameter
+    names = (*profile_names(), *user_profile_names())
+    found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+    return [CompletionItem(incomplete, type="file"), *found]
+
+
 def profile_option_with(description: str) -> Callable[[Command], Command]:
     """Printer, material and limits, with a command's own description."""
     return click.option(
@@ -162,6 +181,7 @@ def profile_option_with(description: str) -> Callable[[Command], Command]:
         default=DEFAULT_PROFILE,
         show_default=True,
         metavar="NAME|FILE",
+        shell_complete=complete_profile,
         help=description,
     )
 

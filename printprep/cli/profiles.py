@@ -9,6 +9,7 @@ import click
 from printprep.cli.group import LazyGroup
 from printprep.cli.options import (
     DEFAULT_PROFILE,
+    complete_profile,
     force_option,
     json_option,
     overrides,
@@ -47,7 +48,7 @@ def list_command(as_json: bool) -> None:
 
 
 @command.command("show")
-@click.argument("name")
+@click.argument("name", shell_complete=complete_profile)
 @json_option
 def show_command(name: str, as_json: bool) -> None:
     """Show profile NAME as TOML, with the source of every figure.
@@ -65,7 +66,7 @@ def show_command(name: str, as_json: bool) -> None:
 
 
 @command.command("export", short_help="Export a profile for PrusaSlicer.")
-@click.argument("name")
+@click.argument("name", shell_complete=complete_profile)
 @path_option(
     "-o",
     "--output",
@@ -104,6 +105,7 @@ def export_command(name: str, output: Path | None, settings: tuple[str, ...]) ->
     default=DEFAULT_PROFILE,
     show_default=True,
     metavar="NAME|FILE",
+    shell_complete=complete_profile,
     help="The profile to begin with.",
 )
 @force_option
@@ -137,6 +139,7 @@ def new_command(name: str, base: str, force: bool, as_json: bool) -> None:
     default=DEFAULT_PROFILE,
     show_default=True,
     metavar="NAME|FILE",
+    shell_complete=complete_profile,
     help="The profile that gives what the files lack.",
 )
 @click.option(

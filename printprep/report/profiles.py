@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
@@ -25,11 +26,11 @@ def show_profiles(
 
     refused : name → why, for files in ``folder``, that of the user's own, that are no profiles.
     """
-    console.print(_table(shipped))
+    console.print(_table(console, shipped))
     if own or refused:
         console.print(f"\nYour own, in {folder}:", soft_wrap=True)
     if own:
-        console.print(_table(own))
+        console.print(_table(console, own))
     for name, reason in refused.items():
         console.print(f"{name} is not usable. {reason}")
     console.print("\n`printprep profiles show NAME` shows the source of each figure.")
@@ -102,18 +103,25 @@ def _rows(rows: Sequence[tuple[str, str, str]]) -> Table:
     return table
 
 
-def _table(profiles: Sequence[Profile]) -> Table:
-    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
-    for head in ("name", "process", "material", "wall", "layer", "bed, mm"):
-        table.add_column(head, no_wrap=True)
-    for item in profiles:
-        bed = " × ".join(f"{side:g}" for side in item.printer.bed_mm)
-        table.add_row(
+def _table(console: Console, profiles: Sequence[Profile]) -> Table:
+    """A row for each profile, without the last columns where the screen is too narrow for them."""
+    heads = ("name", "process", "material", "wall", "layer", "bed, mm")
+    rows = [
+        (
             item.name,
             item.process,
             item.material.name,
             f"{item.wall_mm:g}",
             f"{item.printer.layer_height_mm:g}",
-            bed,
+            " × ".join(f"{side:g}" for side in item.printer.bed_mm),
         )
+        for item in profiles
+    ]
+    widths = [max(cell_len(row[k]) for row in (heads, *rows)) + 1 for k in range(len(heads))]
+    shown = max(k for k in range(1, len(heads) + 1) if k == 1 or sum(widths[:k]) <= console.width)
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    for head in heads[:shown]:
+        table.add_column(head, overflow="fold", no_wrap=shown > 1)
+    for row in rows:
+        table.add_row(*row[:shown])
     return table
