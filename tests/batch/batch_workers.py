@@ -14,7 +14,7 @@ from printprep.mesh.write import to_bytes
 from printprep.pipeline.job import Job
 from printprep.pipeline.options import FillOptions
 
-QUICK = Job(Path(), Path(), options=FillOptions(resolution=16, vaults="none"))
+QUICK = Job(Path(), Path(), options=FillOptions(resolution=16, vaults="none", blocker=False))
 
 
 def models(folder: Path, *names: str, size: float = 20.0) -> list[Path]:
