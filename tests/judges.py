@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 import igl
 import lib3mf
@@ -13,6 +15,7 @@ from numpy.typing import NDArray
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int64]
+CONFIG = "Metadata/Slic3r_PE_model.config"
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +26,12 @@ class Mesh:
     faces: Int
 
 
-def read_strictly(path: Path) -> tuple[Mesh, list[str]]:
-    """The one mesh of a 3MF as lib3mf reads it in strict mode, and its warnings."""
+def read_strictly(path: Path, *, everything: bool = False) -> tuple[Mesh, list[str]]:
+    """The one mesh of a 3MF as lib3mf reads it in strict mode, and its warnings.
+
+    Triangles that PrusaSlicer's config names as no material (support blockers, modifiers) are left
+    out, unless ``everything`` is asked for.
+    """
     wrapper = lib3mf.get_wrapper()
     model = wrapper.CreateModel()
     reader = model.QueryReader("3mf")
@@ -37,7 +44,25 @@ def read_strictly(path: Path) -> tuple[Mesh, list[str]]:
     vertices = np.array([tuple(v.Coordinates) for v in found.GetVertices()], dtype=float)
     faces = np.array([tuple(t.Indices) for t in found.GetTriangleIndices()], dtype=np.int64)
     assert not objects.MoveNext()
+    if not everything:
+        faces = faces[_material(path, len(faces))]
+        used = np.unique(faces)
+        vertices, faces = vertices[used], np.searchsorted(used, faces)
     return Mesh(vertices, faces), warnings
+
+
+def _material(path: Path, count: int) -> NDArray[np.bool_]:
+    """(count,) whether each triangle is material, by PrusaSlicer's config."""
+    material = np.ones(count, dtype=bool)
+    with zipfile.ZipFile(path) as package:
+        if CONFIG not in package.namelist():
+            return material
+        config = ElementTree.fromstring(package.read(CONFIG))
+    for volume in config.iter("volume"):
+        settings = {item.get("key"): item.get("value") for item in volume.iter("metadata")}
+        if settings.get("volume_type") != "ModelPart":
+            material[int(volume.get("firstid", 0)) : int(volume.get("lastid", -1)) + 1] = False
+    return material
 
 
 def outside_and_cavities(mesh: Mesh) -> tuple[Mesh, Mesh | None]:

@@ -87,7 +87,7 @@ def test_two_bodies_are_weighed_each_by_itself(prusa_slicer: Path):
 
 
 def test_lib3mf_reads_one_solid_and_its_ballast(part: Path):
-    mesh, warnings = read_strictly(part)
+    mesh, warnings = read_strictly(part, everything=True)
     assert warnings == []
     shells = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).split()
     outside, ballast = sorted(shells, key=lambda shell: -shell.volume)

@@ -32,8 +32,6 @@ def job(tmp_path: Path) -> Job:
 
 
 def test_the_file_holds_the_figures_of_the_result(job: Job):
-    # Without a support blocker, which lib3mf takes for material
-    job = replace(job, options=replace(QUICK, vaults="slicer"))
     done = run_job(job)
     assert (done.written, done.plugs, done.verified, done.stopped) == (
         job.output,
