@@ -99,14 +99,17 @@ def _refuse_far(
 
 
 def _beside_drains(points: Float, drains: tuple[Drain, ...]) -> Bool:
-    """(n,) whether points (n, 3) mm lie in or around a drain hole."""
+    """(n,) whether points (n, 3) mm lie in or around a drain hole.
+
+    Inward a hole has no end here: it may graze the floor of its cavity far from its mouth.
+    """
     near = np.zeros(len(points), dtype=bool)
     for drain in drains:
         away = points - np.array(drain.centre_mm)
         along = away @ np.array(drain.axis)
         across = np.linalg.norm(away - along[:, None] * np.array(drain.axis), axis=1)
         reach = drain.length_mm + 2 * drain.diameter_mm
-        near |= (across <= BESIDE_DRAIN * drain.diameter_mm) & (np.abs(along) <= reach)
+        near |= (across <= BESIDE_DRAIN * drain.diameter_mm) & (along <= reach)
     return near
 
 
