@@ -14,7 +14,7 @@ SIDE = 24.0
 
 
 @functools.cache
-def hollow_block(buildplate_only: str = "1") -> HollowResult:
+def hollow_block() -> HollowResult:
     """A cube of 24 mm: mass and tilt angle are known in closed form, but for the cavity's rims."""
     block = trimesh.creation.box((SIDE, SIDE, SIDE))
     block.metadata["name"] = "block"
@@ -23,13 +23,12 @@ def hollow_block(buildplate_only: str = "1") -> HollowResult:
         resolution=32,
         base="never",
         vaults="none",  # one plain room: quick to slice and to search
-        overrides={"slicer.object_settings.support_material_buildplate_only": buildplate_only},
     )
 
 
-def write_block(folder: Path, buildplate_only: str = "1") -> Path:
+def write_block(folder: Path) -> Path:
     part = folder / "block.3mf"
-    hollow_block(buildplate_only).write(part)
+    hollow_block().write(part)
     return part
 
 
