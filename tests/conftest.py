@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -82,6 +82,12 @@ def cura_engine() -> Path:
 def chromium() -> tuple[Path, Path]:
     """A real browser and its driver, likewise."""
     return _tool("chromium"), _tool("chromedriver")
+
+
+@pytest.fixture(scope="session")
+def shell_program() -> Callable[[str], Path]:
+    """Finds a real shell by its name, likewise."""
+    return _tool
 
 
 @pytest.fixture(scope="session")

@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from gcode_moves import extruding_moves
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -44,29 +45,11 @@ class Lines:
 
 def layers_of(gcode: Path) -> list[Lines]:
     """The lines of the part, layer by layer."""
-    x = y = z = e = 0.0
-    width, relative, counts = 0.45, False, True
     rows: dict[float, list[tuple[float, ...]]] = {}
-    for line in gcode.read_text(encoding="utf-8").splitlines():
-        if line.startswith(";TYPE:"):
-            counts = not line.removeprefix(";TYPE:").startswith(_NOT_PART)
-        elif line.startswith(";WIDTH:"):
-            width = float(line.removeprefix(";WIDTH:"))
-        code, _, rest = line.partition(";")[0].partition(" ")
-        if code in ("M82", "M83"):
-            relative = code == "M83"
-        elif code == "G92":
-            e = next((float(word[1:]) for word in rest.split() if word[0] == "E"), e)
-        elif code in ("G0", "G1"):
-            words = {word[0]: float(word[1:]) for word in rest.split()}
-            new_x, new_y, z = words.get("X", x), words.get("Y", y), words.get("Z", z)
-            used = 0.0
-            if "E" in words:
-                used = words["E"] if relative else words["E"] - e
-                e = words["E"]
-            if counts and used > 0 and (new_x, new_y) != (x, y):
-                rows.setdefault(round(z, 4), []).append((x, y, new_x, new_y, width))
-            x, y = new_x, new_y
+    for move in extruding_moves(gcode):
+        if not move.kind.startswith(_NOT_PART):
+            row = (*move.start, *move.end, move.width_mm)
+            rows.setdefault(round(move.z_mm, 4), []).append(row)
     return [
         Lines(z, *(np.array(rows[z])[:, columns] for columns in ([0, 1], [2, 3], 4)))
         for z in sorted(rows)

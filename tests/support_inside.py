@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from gcode_moves import extruding_moves
 from manifold3d import Manifold
 from numpy.typing import NDArray
 
@@ -83,26 +84,7 @@ def supports_g(
 
 def support_moves(gcode: Path) -> tuple[Float, Float]:
     """(n, 3) middles of the extruding moves of support, and (n,) filament each takes, mm."""
-    x = y = z = e = 0.0
-    support = relative = False
-    middles, filament = [], []
-    for line in gcode.read_text(encoding="utf-8").splitlines():
-        if line.startswith(";TYPE:"):
-            support = line.startswith(";TYPE:Support material")
-        code, _, rest = line.partition(";")[0].partition(" ")
-        if code in ("M82", "M83"):
-            relative = code == "M83"
-        elif code == "G92":
-            e = next((float(word[1:]) for word in rest.split() if word[0] == "E"), e)
-        elif code in ("G0", "G1"):
-            words = {word[0]: float(word[1:]) for word in rest.split()}
-            new_x, new_y, z = words.get("X", x), words.get("Y", y), words.get("Z", z)
-            used = 0.0
-            if "E" in words:
-                used = words["E"] if relative else words["E"] - e
-                e = words["E"]
-            if support and used > 0 and (new_x, new_y) != (x, y):
-                middles.append(((x + new_x) / 2, (y + new_y) / 2, z))
-                filament.append(used)
-            x, y = new_x, new_y
+    moves = [m for m in extruding_moves(gcode) if m.kind.startswith("Support material")]
+    middles = [(*np.add(move.start, move.end) / 2, move.z_mm) for move in moves]
+    filament = [move.filament_mm for move in moves]
     return np.array(middles).reshape(-1, 3), np.array(filament)

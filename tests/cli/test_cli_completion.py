@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -40,10 +39,8 @@ def test_each_shell_has_a_script_that_asks_printprep(shell, capsys):
 
 
 @pytest.mark.parametrize("shell", SHELLS)
-def test_the_shell_itself_reads_its_script(shell, capsys, tmp_path):
-    program = shutil.which(shell)
-    if program is None:
-        pytest.skip(f"{shell} is not installed")
+def test_the_shell_itself_reads_its_script(shell, shell_program, capsys, tmp_path):
+    program = shell_program(shell)
     path = tmp_path / "script"
     path.write_text(script(shell, capsys), encoding="utf-8")
     done = subprocess.run([program, "-n", str(path)], capture_output=True, text=True)
@@ -129,10 +126,8 @@ LINE = {
 
 
 @pytest.mark.parametrize("shell", LINE)
-def test_a_real_shell_completes(shell, tmp_path, capsys):
-    found = shutil.which(shell)
-    if found is None:
-        pytest.skip(f"{shell} is not installed")
+def test_a_real_shell_completes(shell, shell_program, tmp_path, capsys):
+    found = shell_program(shell)
     (tmp_path / "script").write_text(script(shell, capsys), encoding="utf-8")
     program = tmp_path / "printprep"
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m printprep "$@"\n', encoding="utf-8")
