@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Move:
-    """A move that prints: start and end (x, y) mm, height, type and width by the slicer, filament."""
+    """A move that prints: start and end (x, y) mm, the slicer's type and width, filament used."""
 
     start: tuple[float, float]
     end: tuple[float, float]

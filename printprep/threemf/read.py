@@ -11,15 +11,16 @@ case, a missing unit, doubled or unused vertices, degenerate triangles.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.errors import InputError, UsageError
+from printprep.errors import InputError
 from printprep.threemf.archive import Archive
+from printprep.threemf.choose import Chooser
 from printprep.threemf.package import MODEL_PART
 from printprep.threemf.parse import (
     ObjectReference,
@@ -28,7 +29,7 @@ from printprep.threemf.parse import (
     parse_elements,
     parse_model,
 )
-from printprep.threemf.project import Plate, VolumeRole, counts_of, read_project
+from printprep.threemf.project import VolumeRole, counts_of, read_project
 from printprep.threemf.styles import StyleBook
 from printprep.types import Paint, ReadNote
 from printprep.wording import counted, printable, shortened
@@ -44,7 +45,6 @@ _COPIED_MAX = 2_000_000
 _COPIES_MAX = 4
 _DEPTH_MAX = 64
 _PLACED_MAX = 100_000
-_LISTED = 8
 _SOLID = "model"
 _AGAIN = "Export the model again."
 
@@ -179,7 +179,12 @@ class _Build:
         model = self._model(self._root)
         self.unit_mm = self._unit(model)
         to_mm = np.diag([self.unit_mm, self.unit_mm, self.unit_mm, 1.0])
-        for chosen in self._chosen(model, plate, item):
+        chooser = Chooser(
+            self._archive.name, self._project, name_of=self._name, is_solid=self._is_solid
+        )
+        chosen_items = chooser.chosen(model.items, plate, item)
+        self._notes += chooser.notes
+        for chosen in chosen_items:
             part = chosen.part or self._root
             self.names.append(self._name(chosen))
             first = self._face_count
@@ -238,113 +243,12 @@ class _Build:
             )
         return model.unit_mm
 
-    def _chosen(
-        self, model: ParsedModel, plate: int | None, item: str | None
-    ) -> list[ObjectReference]:
-        """The items of the build to read: printable solids, of one plate, and one by its name."""
-        count: dict[str, int] = {}
-        numbered: list[tuple[ObjectReference, tuple[str, int]]] = []
-        for reference in model.items:
-            number = count.get(reference.object_id, 0)
-            count[reference.object_id] = number + 1
-            numbered.append((reference, (reference.object_id, number)))
-        off = sum(not reference.printable for reference, _ in numbered)
-        if off:
-            self._leave(f"{counted(off, 'object')} that {_is(off)} not printable")
-        printed = [
-            (reference, key)
-            for reference, key in numbered
-            if reference.printable
-            and self._object(reference.part or self._root, reference.object_id).kind == _SOLID
-        ]
-        keys = {key for _, key in printed}
-        plates = [found for found in self._project.plates if found.members & keys]
-        members = self._members(plates, plate, item)
-        if members is not None:
-            everywhere = frozenset().union(*(found.members for found in plates))
-            beside = len(keys - everywhere)
-            if beside:
-                self._leave(f"{counted(beside, 'object')} beside the plates")
-            printed = [(reference, key) for reference, key in printed if key in members]
-        references = [reference for reference, _ in printed]
-        if item is not None:
-            return [self._named(references, item)]
-        if len({reference.object_id for reference in references}) > 1:
-            message = (
-                f"The file holds {len(references)} objects, which were read as one model: "
-                f"{self._listed(references)}."
-            )
-            self._notes.append(
-                ReadNote("read-together", message, "Take one of them with --object NAME or N.")
-            )
-        return references
-
-    def _members(
-        self, plates: Sequence[Plate], number: int | None, item: str | None
-    ) -> frozenset[tuple[str, int]] | None:
-        """The items of the plate to read, None for all."""
-        listed = ", ".join(
-            f"{plate.number}{f' {shortened(plate.name)!r}' if plate.name else ''} "
-            f"({self._listed_ids(plate)})"
-            for plate in plates[:_LISTED]
-        )
-        if number is not None:
-            for plate in plates:
-                if plate.number == number:
-                    return plate.members
-            raise UsageError(
-                f"{self._archive.name} has no plate {number}.",
-                f"Its plates are {listed}." if plates else "It has no plates: leave out --plate.",
-            )
-        if len(plates) > 1 and item is None:
-            raise InputError(
-                f"{self._archive.name} has {len(plates)} plates: {listed}.",
-                "Name one with --plate N.",
-            )
-        return plates[0].members if len(plates) == 1 else None
-
-    def _named(self, references: Sequence[ObjectReference], item: str) -> ObjectReference:
-        """The one object with a name or a number.  Copies of one object count as one name."""
-        names = [self._name(reference) for reference in references]
-        wanted = item.strip()
-        matches = [r for r, name in zip(references, names, strict=True) if name == item]
-        if not matches:
-            matches = [
-                reference
-                for reference, name in zip(references, names, strict=True)
-                if name.strip().casefold() == wanted.casefold() and wanted
-            ]
-        if not matches and wanted.isascii() and wanted.isdecimal() and len(wanted) < 9:
-            matches = list(references[int(wanted) - 1 : int(wanted)] if int(wanted) else ())
-        if len({(found.part, found.object_id) for found in matches}) == 1:
-            return matches[0]
-        fact = f"{len(matches)} objects named" if matches else "no object"
-        raise UsageError(
-            f"{self._archive.name} has {fact} {shortened(item)!r}.",
-            f"Its objects are {self._listed(references)}." if references else None,
-        )
-
-    def _listed(self, references: Sequence[ObjectReference]) -> str:
-        """Objects with their numbers: "1 'cone', 2 'block'"."""
-        shown = [
-            f"{number} {shortened(self._name(reference))!r}"
-            for number, reference in enumerate(references[:_LISTED], 1)
-        ]
-        more = len(references) - len(shown)
-        return ", ".join(shown) + (f" and {more} more" if more else "")
-
-    def _listed_ids(self, plate: Plate) -> str:
-        ids = list(dict.fromkeys(object_id for object_id, _ in sorted(plate.members)))
-        names = [shortened(self._project.names.get(object_id, "")) for object_id in ids[:_LISTED]]
-        more = f" and {len(ids) - _LISTED} more" if len(ids) > _LISTED else ""
-        return ", ".join(name or "unnamed" for name in names) + more
+    def _is_solid(self, reference: ObjectReference) -> bool:
+        return self._object(reference.part or self._root, reference.object_id).kind == _SOLID
 
     def _name(self, reference: ObjectReference) -> str:
         own = self._object(reference.part or self._root, reference.object_id).name
         return own or self._project.names.get(reference.object_id, "")
-
-    def _leave(self, what: str) -> None:
-        self._notes.append(ReadNote("left-out", f"Left out of the file: {what}."))
 
     def _place(
         self,
@@ -505,10 +409,6 @@ def _compact(points: Float, faces: Int) -> tuple[Float, Int]:
     """The vertices (n, 3) that faces (m, 3) use, and the faces that count through them."""
     used, index = np.unique(faces, return_inverse=True)
     return points[used], index.reshape(-1, 3)
-
-
-def _is(number: int) -> str:
-    return "is" if number == 1 else "are"
 
 
 def _root_part(archive: Archive) -> str:
