@@ -27,12 +27,14 @@ from printprep.stand.stability import balanced, stability
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+    from printprep.output.figures import Figures
     from printprep.page.shape import Shape
     from printprep.pipeline.check import Checked
     from printprep.pipeline.explore import Point
+    from printprep.profiles import Profile
     from printprep.result import HollowResult
     from printprep.stand.poses import Pose
-    from printprep.types import Finding, Stability
+    from printprep.types import Finding, Lean, Stability
     from printprep.verify.run import Verified
 
 _STILL_PIXELS = 420
@@ -80,12 +82,7 @@ def page_of_result(
     """
     from printprep.pipeline.curve import mass_over_lean
 
-    figures, profile = result.figures(), result.profile
-    picture = Picture.of(shape_of_result(result), profile.wall_mm)
-    encoded = encode(picture.meshes.meshes)
-    tone, words, lead = facts.verdict(
-        findings, result.tilt_deg, str(result.lean), result.lean.angle_deg
-    )
+    figures = result.figures()
     curve = None
     if result.workings is not None:
         points = mass_over_lean(result.workings.program, result.part.base, result.lean.azimuth_deg)
@@ -97,31 +94,18 @@ def page_of_result(
             (result.tilt_solid_deg, result.solid_mass_g),
             f"The least mass at every lean, {note}.",
         )
-    groups = facts.groups(figures, profile, result.simulation)
-    return Page(
-        name=result.part.name,
-        kicker=f"Hollowed for {profile.material.name}, {profile.name}",
-        tone=tone,
-        verdict=words,
-        lead=lead,
-        cards=facts.cards(figures, profile),
-        groups=_with_print(groups, verified),
-        findings=facts.finding_rows(findings),
-        poses=(),
+    return _page_of_hollowed(
+        figures,
+        result.profile,
+        Picture.of(shape_of_result(result), result.profile.wall_mm),
+        source,
+        findings=findings,
+        lean=result.lean,
+        stability=result.stability,
+        centre_before_mm=result.stability_solid.centre_of_mass_mm,
+        groups=facts.groups(figures, result.profile, result.simulation),
+        verified=verified,
         curve=curve,
-        origin=facts.origin(source, profile, picture.meshes),
-        geometry=encoded.base64,
-        still=picture.still,
-        view=view_of(
-            picture.shape,
-            encoded,
-            wall_mm=profile.wall_mm,
-            stability=result.stability,
-            centre_mm=result.centre_mm,
-            centre_before_mm=result.stability_solid.centre_of_mass_mm,
-            lean=result.lean,
-            findings=findings,
-        ),
         form=form,
     )
 
@@ -144,10 +128,49 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
         raise InputError(f"{path.name} has no triangles.")
     part = from_arrays(vertices + np.array(figures.bounds_mm[0]) - vertices.min(axis=0), faces)
     picture = Picture.of(shape_of_part(part, figures, profile), profile.wall_mm)
-    encoded = encode(picture.meshes.meshes)
     extra = () if verified is None else verified.findings
-    findings = sorted_findings([*figures.findings, *extra])
-    lean = Lean(figures.lean_deg, figures.lean_azimuth_deg)
+    return _page_of_hollowed(
+        figures,
+        profile,
+        picture,
+        source,
+        findings=sorted_findings([*figures.findings, *extra]),
+        lean=Lean(figures.lean_deg, figures.lean_azimuth_deg),
+        stability=_stability(
+            part,
+            figures.centre_of_mass_mm,
+            profile.printer.first_layer_mm,
+            infilled=figures.infill is not None,
+        ),
+        centre_before_mm=mass_properties(picture.shape.outside).centre_mm,
+        groups=facts.groups(figures, profile),
+        verified=verified,
+        curve=None,
+        form=None,
+    )
+
+
+def _page_of_hollowed(
+    figures: Figures,
+    profile: Profile,
+    picture: Picture,
+    source: Source,
+    *,
+    findings: Sequence[Finding],
+    lean: Lean,
+    stability: Stability,
+    centre_before_mm: tuple[float, float, float],
+    groups: tuple[Group, ...],
+    verified: Verified | None,
+    curve: Curve | None,
+    form: Form | None,
+) -> Page:
+    """The page of a hollowed part, from its figures and its picture.
+
+    centre_before_mm : centre of mass (x, y, z) of the solid;  groups : of figures, without those of
+    the print.
+    """
+    encoded = encode(picture.meshes.meshes)
     tone, words, lead = facts.verdict(findings, figures.tilt_deg, str(lean), lean.angle_deg)
     return Page(
         name=figures.model,
@@ -156,10 +179,10 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
         verdict=words,
         lead=lead,
         cards=facts.cards(figures, profile),
-        groups=_with_print(facts.groups(figures, profile), verified),
+        groups=_with_print(groups, verified),
         findings=facts.finding_rows(findings),
         poses=(),
-        curve=None,
+        curve=curve,
         origin=facts.origin(source, profile, picture.meshes),
         geometry=encoded.base64,
         still=picture.still,
@@ -167,17 +190,13 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
             picture.shape,
             encoded,
             wall_mm=profile.wall_mm,
-            stability=_stability(
-                part,
-                figures.centre_of_mass_mm,
-                profile.printer.first_layer_mm,
-                infilled=figures.infill is not None,
-            ),
+            stability=stability,
             centre_mm=figures.centre_of_mass_mm,
-            centre_before_mm=mass_properties(picture.shape.outside).centre_mm,
+            centre_before_mm=centre_before_mm,
             lean=lean,
             findings=findings,
         ),
+        form=form,
     )
 
 
