@@ -35,6 +35,8 @@ LOST_MM = 0.2
 # Least cosine between the normal of a facet and the way from the outside, where the facet is an
 # offset of one surface.
 ALONG = 0.9
+# A surface that intersects itself returns there, each time in one ring of triangles more.
+MOST_RETURNS = 3
 # Where corners cannot be moved apart, the surface should lie so much deeper.
 NECK_MM = 0.1
 # Samples lie so many to a wall.
@@ -104,8 +106,13 @@ def with_fewer_triangles(
         return _LOST
     points, walls = _corrected(drawn, triangles, outside, wall_mm, walls, raised=True)
     crossed = self_intersections(points, triangles)
-    if len(crossed.face):  # the surface stays where it was drawn
+    for rings in range(MOST_RETURNS):
+        if not len(crossed.face):
+            break
+        # Around there the surface returns to where it was drawn
         back = np.union1d(crossed.edge, triangles[crossed.face])
+        for _ in range(rings):
+            back = np.unique(triangles[_around(back, triangles)])
         points[back] = drawn[back]
         walls = measured(points, triangles, outside, wall_mm, _around(back, triangles))
         points, walls = _corrected(points, triangles, outside, wall_mm, walls, raised=False)
