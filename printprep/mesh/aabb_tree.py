@@ -1,13 +1,22 @@
-"""A mesh in a search tree (axis-aligned boxes): nearest points, and first hits of rays."""
+"""A mesh in search trees: nearest points, and first hits of rays.
+
+Nearest points come from libigl's tree of boxes.  Rays go through Embree (Wald et al., "Embree: a
+kernel framework for efficient CPU ray tracing", 2014), which calculates in single precision; the
+place of a hit is then calculated again in double precision.  On processors that Embree is not built
+for, rays go through libigl's tree too, about twenty times as slowly.
+"""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from printprep.mesh.measure import area_normals
+
 if TYPE_CHECKING:
-    from printprep.arrays import Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 
 class SurfaceTree:
@@ -22,6 +31,7 @@ class SurfaceTree:
         self._tree: Any = igl.AABB()
         self._tree.init(self.vertices, self.faces)
         # A ray that starts on the surface is moved forward by this much.
+        self._centre_mm = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2
         self._beyond_mm = 1e-6 * float(np.ptp(vertices, axis=0).max())
 
     def nearest(self, points: Float) -> tuple[Float, Float]:
@@ -48,8 +58,54 @@ class SurfaceTree:
         if len(points) == 0:
             return np.zeros(0), np.zeros(0, dtype=np.int64)
         starts = np.ascontiguousarray(points + self._beyond_mm * directions)
+        if self._scene is None:
+            return self.first_hit_exactly(points, directions)
+        face = self._cast(starts, directions, np.inf)
+        far = np.full(len(points), np.inf)
+        hit = np.flatnonzero(face >= 0)
+        corner = self.vertices[self.faces[face[hit], 0]]
+        normal = area_normals(self.vertices[self.faces[face[hit]]])
+        across = np.einsum("ij,ij->i", normal, directions[hit])
+        along = np.einsum("ij,ij->i", normal, corner - points[hit])
+        far[hit] = np.divide(along, across, out=np.zeros(len(hit)), where=across != 0)
+        return np.where(np.isfinite(far), np.maximum(far, self._beyond_mm), far), face
+
+    def first_hit_exactly(self, points: Float, directions: Float) -> tuple[Float, Int]:
+        """The same in double precision throughout, for rays that graze the surface."""
+        if len(points) == 0:
+            return np.zeros(0), np.zeros(0, dtype=np.int64)
+        starts = np.ascontiguousarray(points + self._beyond_mm * directions)
         face, along, _ = self._tree.intersect_ray_first(
             self.vertices, self.faces, starts, np.ascontiguousarray(directions)
         )
         face = np.ravel(face).astype(np.int64)
         return np.where(face >= 0, np.ravel(along) + self._beyond_mm, np.inf), face
+
+    def may_hit(self, points: Float, directions: Float, within_mm: Float) -> Bool:
+        """(k,) whether a ray may hit the surface within (k,) mm; false where it surely does not."""
+        if self._scene is None:
+            return np.ones(len(points), dtype=bool)
+        hit: Bool = self._cast(points, directions, within_mm) >= 0
+        return hit
+
+    def _cast(self, starts: Float, directions: Float, within_mm: Float | float) -> Int:
+        """(k,) the face that each ray hits first in single precision, −1 for none."""
+        limits = np.empty(len(starts), dtype=np.float32)
+        limits[:] = within_mm
+        face = self._scene.run(
+            (starts - self._centre_mm).astype(np.float32), directions.astype(np.float32), limits
+        )
+        return np.asarray(face).astype(np.int64)
+
+    @cached_property
+    def _scene(self) -> Any:
+        """The triangles in an Embree scene, around the origin; None where it is not installed."""
+        try:
+            from embreex.mesh_construction import TriangleMesh
+            from embreex.rtcore_scene import EmbreeScene
+        except ImportError:
+            return None
+        scene = EmbreeScene()
+        moved = (self.vertices - self._centre_mm).astype(np.float32)
+        TriangleMesh(scene, moved, self.faces.astype(np.int32))
+        return scene

@@ -27,6 +27,8 @@ _SHALLOW = 5e-5
 # intersect faces at most this many rings of triangles away.
 _FOLDED = -0.85
 _RINGS = 2
+# Shorter sums of the unit normals beside an edge have no direction: the faces lie on each other.
+_FLAT = 0.1
 # After a hit on a triangle that shares a corner with the edge the ray goes on, this many times.
 _ROUNDS = 3
 
@@ -51,16 +53,25 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
     vertices : (n, 3), x, y, z in mm;  faces : (m, 3).
     """
     surface = SurfaceTree(vertices, faces)
-    edges = np.unique(np.sort(directed_edges(faces), axis=1), axis=0)
+    every = np.sort(directed_edges(faces), axis=1)
+    _, first, same = np.unique(
+        every[:, 0] * len(vertices) + every[:, 1], return_index=True, return_inverse=True
+    )
+    edges = every[first]
     along = vertices[edges[:, 1]] - vertices[edges[:, 0]]
     length = np.linalg.norm(along, axis=1)
     touch = _TOUCH * float(np.ptp(vertices, axis=0).max())
     going = np.flatnonzero(length > 3 * touch)
+    beside = vertices[edges[going, 0]] + touch * _away(vertices, faces, first, same)[going]
+    unit = along[going] / length[going, None]
+    going = going[surface.may_hit(beside, unit, length[going])]
     done = np.full(len(edges), touch)
     hit = np.full(len(edges), -1, dtype=np.int64)
     for _ in range(_ROUNDS):
         unit = along[going] / length[going, None]
-        far, face = surface.first_hit(vertices[edges[going, 0]] + done[going, None] * unit, unit)
+        far, face = surface.first_hit_exactly(
+            vertices[edges[going, 0]] + done[going, None] * unit, unit
+        )
         done[going] += far
         inside = (face >= 0) & (done[going] < length[going] - touch)
         own = (faces[face][:, :, None] == edges[going][:, None, :]).any(axis=(1, 2))
@@ -79,6 +90,23 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
         at_mm=at,
         apart=piece[edges[found, 0]] != piece[faces[hit[found], 0]],
     )
+
+
+def _away(vertices: Float, faces: Int, first: Int, same: Int) -> Float:
+    """(e, 3) unit vectors from edges out of the planes of their faces.
+
+    A line beside an edge, moved along this, meets none of its faces, but what the edge passes
+    through.  first : (e,) the first directed edge of each;  same : (3m,) the edge of each directed
+    edge.
+    """
+    normals = area_normals(vertices[faces])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(np.float64).tiny)[:, None]
+    of_edge = np.repeat(normals, 3, axis=0)
+    away = np.stack([np.bincount(same, axis, len(first)) for axis in of_edge.T], axis=1)
+    length = np.linalg.norm(away, axis=1, keepdims=True)
+    flat = length > _FLAT
+    result: Float = np.where(flat, away / np.where(flat, length, 1.0), of_edge[first])
+    return result
 
 
 def folded(vertices: Float, faces: Int) -> bool:

@@ -1,7 +1,7 @@
 """Turns triangles into pixels in numpy: a z-buffer without a graphics card, the same on every run.
 
-Each triangle is tested at the pixels of its bounding box, in batches of bounded memory; a pixel
-gets the nearest triangle over its centre, and the one with the lower index on a tie.
+Each triangle is tested at the pixels between its edges, row by row, in batches of bounded memory; a
+pixel gets the nearest triangle over its centre, and the one with the lower index on a tie.
 
 Source: the edge-function test of J. Pineda, "A parallel algorithm for polygon rasterization",
 SIGGRAPH 1988.
@@ -20,7 +20,8 @@ from printprep.arrays import runs
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
 
-_BATCH_PIXELS = 1 << 21
+_BATCH_PIXELS = 1 << 20
+_TRIFLE = 1e-6  # of a pixel
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,21 +72,53 @@ def _candidates(corners: Float, depth: Float, size: int) -> Iterator[tuple[Int, 
 
     corners : (m, 3, 2);  depth : (m, 3).
     """
-    low = np.clip(np.ceil(corners.min(axis=1) - 0.5), 0, size).astype(np.int64)
-    high = np.clip(np.floor(corners.max(axis=1) - 0.5) + 1, 0, size).astype(np.int64)
-    wide, tall = np.maximum(high - low, 0).T
-    count = wide * tall
+    low = np.clip(np.ceil(corners[:, :, 1].min(axis=1) - 0.5), 0, size).astype(np.int64)
+    high = np.clip(np.floor(corners[:, :, 1].max(axis=1) - 0.5) + 1, 0, size).astype(np.int64)
+    owner, step = runs(np.maximum(high - low, 0))
+    row = low[owner] + step
+    first, last = _spans(corners[owner], row + 0.5, size)
+    count = np.maximum(last + 1 - first, 0)
     some = np.flatnonzero(count)
     batch = np.cumsum(count[some]) // _BATCH_PIXELS
     for chosen in np.split(some, np.flatnonzero(np.diff(batch)) + 1):
         run, step = runs(count[chosen])
-        triangle = chosen[run]
-        column = low[triangle, 0] + step % wide[triangle]
-        row = low[triangle, 1] + step // wide[triangle]
-        weights, inside = _weights(corners[triangle], *_centres(column, row))
+        span = chosen[run]
+        triangle, column = owner[span], first[span] + step
+        weights, inside = _weights(corners[triangle], *_centres(column, row[span]))
         weights, triangle = weights[inside], triangle[inside]
         z = (weights * depth[triangle]).sum(axis=1)
-        yield (row * size + column)[inside], triangle, z
+        yield (row[span] * size + column)[inside], triangle, z
+
+
+def _spans(corners: Float, y: Float, size: int) -> tuple[Int, Int]:
+    """(k,) first and (k,) last column of triangles (k, 3, 2) in the rows at heights y (k,).
+
+    They are rounded outward, by a trifle more than the calculation is off.
+    """
+    left, right = np.full(len(y), -0.5), np.full(len(y), size + 0.5)
+    x_low, x_high = corners[:, :, 0].min(axis=1), corners[:, :, 0].max(axis=1)
+    area = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    for index in range(3):
+        start, end = corners[:, index], corners[:, (index + 1) % 3]
+        rise = end[:, 1] - start[:, 1]
+        slanted = rise != 0
+        meet = start[:, 0] + (end[:, 0] - start[:, 0]) * np.divide(
+            y - start[:, 1], rise, out=np.zeros(len(y)), where=slanted
+        )
+        begins = slanted & ((rise > 0) != (area > 0))
+        ends = slanted & ~begins
+        left = np.where(begins, np.maximum(left, meet), left)
+        right = np.where(ends, np.minimum(right, meet), right)
+    left, right = np.maximum(left, x_low), np.minimum(right, x_high)
+    first = np.clip(np.ceil(left - 0.5 - _TRIFLE), 0, size).astype(np.int64)
+    last = np.clip(np.floor(right - 0.5 + _TRIFLE), -1, size - 1).astype(np.int64)
+    return first, np.where(area == 0.0, first - 1, last)
+
+
+def _cross(a: Float, b: Float) -> Float:
+    """(k,) z component of the cross product of vectors (k, 2)."""
+    result: Float = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return result
 
 
 def _centres(column: Int, row: Int) -> tuple[Float, Float]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.shell_figures import shell_figures
 from printprep.render.raster import coverage, rasterize
 from printprep.render.shading import blur, camera, corner_normals, dot, normalized, shaded, to_srgb
 
@@ -32,13 +33,26 @@ def thumbnail_png(vertices: Float, faces: Int, size: int = 256) -> bytes:
 
     vertices : (n, 3) mm, z up;  faces : (m, 3), counter-clockwise seen from outside.
     """
-    rgba = _render(np.asarray(vertices, dtype=np.float64), np.asarray(faces), size * _OVERSAMPLING)
+    vertices, faces = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    rgba = _render(vertices, _not_enclosed(vertices, faces), size * _OVERSAMPLING)
     blocks = rgba.reshape(size, _OVERSAMPLING, size, _OVERSAMPLING, 4).mean(axis=(1, 3))
     alpha = blocks[..., 3:]
     light = np.where(alpha > 0.0, blocks[..., :3] / np.where(alpha > 0.0, alpha, 1.0), 0.0)
     srgb = to_srgb(light)
     picture = np.concatenate([srgb, alpha], axis=2)
     return _png(np.clip(np.rint(picture * 255.0), 0, 255).astype(np.uint8))
+
+
+def _not_enclosed(vertices: Float, faces: Int) -> Int:
+    """The faces (m, 3) but for those of voids inside the largest body, which nobody sees."""
+    figures = shell_figures(vertices, faces)
+    if len(figures.volume_mm3) < 2:
+        return faces
+    around = int(np.argmax(figures.volume_mm3))
+    within = (figures.low_mm > figures.low_mm[around]) & (figures.high_mm < figures.high_mm[around])
+    enclosed = (figures.volume_mm3 < 0) & within.all(axis=1)
+    seen: Int = faces[~enclosed[figures.label]]
+    return seen
 
 
 def _render(vertices: Float, faces: Int, size: int) -> Float:

@@ -116,8 +116,8 @@ class _Balls:
         return _Balls(np.full(count, radius_mm), np.full((count, 3), np.nan))
 
     def shrunk(self, which: Int, radius: Float, across: Float) -> None:
-        """Take new balls where they are smaller: at points (j,), radii (j,), across (j, 3)."""
-        smaller = radius < self.radius[which]
+        """Take new balls where they are no larger: at points (j,), radii (j,), across (j, 3)."""
+        smaller = radius <= self.radius[which]
         self.radius[which[smaller]] = radius[smaller]
         self.across[which[smaller]] = across[smaller]
 
