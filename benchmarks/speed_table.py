@@ -90,7 +90,7 @@ def measured(path: Path, up: str, chosen: Namespace, profile: Profile, slicer: S
         settings = profile_settings(profile)
         infill = {**settings, **wall_keys(profile), "fill_density": "15%", "fill_pattern": "gyroid"}
         row |= sliced("part", slicer, part, settings, folder)
-        with contextlib.suppress(ToolError):  # a model that touches the bed in a point has no layers
+        with contextlib.suppress(ToolError):  # a foot that is a point has no layer
             row |= sliced("gyroid", slicer, model, infill, folder)
     return row
 

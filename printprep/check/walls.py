@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import arrays, gap_mm
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,11 +52,7 @@ def wall_min_mm(part: Walled) -> Wall | None:
     outer, inner = arrays(part.outside), arrays(cavity)
     outward, inward = _nearest(inner, outer), _nearest(outer, inner)
     sampled, middle = min(outward, inward, key=lambda nearest: nearest[0])
-    # Everything beyond the outside, as a solid: the gap between it and the cavity is the wall.
-    low, high = np.reshape(part.outside.bounding_box(), (2, 3))
-    margin = 1.0 + float((high - low).max())
-    beyond = _box(low - margin, high + margin) - part.outside
-    exact = float(beyond.min_gap(cavity, sampled * (1 + 1e-9) + 1e-9))
+    exact = gap_mm(part.outside, cavity, sampled * (1 + 1e-9) + 1e-9)
     x, y, z = middle.tolist()
     return Wall(min(exact, sampled), (x, y, z))
 
@@ -73,13 +69,6 @@ def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float
     squared, _, nearest = igl.point_mesh_squared_distance(points, *to)
     least = int(np.argmin(squared))
     return float(np.sqrt(max(squared[least], 0.0))), (points[least] + nearest[least]) / 2
-
-
-def _box(low: Float, high: Float) -> Manifold:
-    """The box between two corners, (3,) mm each."""
-    from manifold3d import Manifold
-
-    return Manifold.cube((high - low).tolist()).translate(low.tolist())
 
 
 def united(solids: Sequence[Manifold]) -> Manifold:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 # Cells of the fine field per wall: at two, the facets of a surface of curvature radius `wall` stay
 # within (wall/2)²·2/(8·wall) = 0.063 wall of it, which the cavity's surface corrects.
-CELLS_PER_WALL = 2.0
+CELLS_PER_WALL = 1.5
 # Most cells along the longest side: 57 million cells in all, 230 MB.
 MOST_FINE_CELLS = 384
 

@@ -163,6 +163,21 @@ def distance_mm(points: Float, manifold: Manifold) -> Float:
     return distance_to_mesh_mm(points, *arrays(manifold))
 
 
+def gap_mm(outside: Manifold, inside: Manifold, at_most_mm: float) -> float:
+    """Exact least distance in mm between the surfaces of a solid and of another one in it.
+
+    at_most_mm : a greater distance is reported as this.  It is 0 where one breaks through.
+    """
+    from manifold3d import Manifold
+
+    low, high = np.reshape(outside.bounding_box(), (2, 3))
+    margin = 1.0 + float((high - low).max())
+    size, corner = (high - low + 2 * margin).tolist(), (low - margin).tolist()
+    # Everything beyond the outside, as a solid: the gap between it and the inner one
+    beyond = Manifold.cube(size).translate(corner) - outside
+    return float(beyond.min_gap(inside, at_most_mm))
+
+
 def inverted(manifold: Manifold) -> Manifold:
     """The same surface turned inside out: a solid becomes a void, a void a solid."""
     vertices, faces = arrays(manifold)

@@ -12,12 +12,11 @@ it: they are surfaces too.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.surface import isosurface
+from printprep.cavity.surface import isosurface, lower_convex
 from printprep.errors import GeometryError
 from printprep.grid.distance import DepthField, Surface
 from printprep.mesh.measure import arrays
@@ -31,9 +30,9 @@ if TYPE_CHECKING:
 
 # Room between the blocker's surface and each of its limits: slices are closed, corners rounded.
 MARGIN_MM = 0.02
-# The field is taken at every n-th cell, and the surface simplified by this share of the room on
-# either side; the first that keeps the limits is taken.
-_COARSENESS = ((2, 0.5), (2, 0.4), (2, 0.3), (2, 0.2), (1, 0.4), (1, 0.2), (1, 0.05))
+# The surface is simplified by this share of the room on either side; the first that keeps the
+# limits is taken.
+_COARSENESS = (0.5, 0.4, 0.3, 0.2, 0.1, 0.05)
 # What may be left uncovered: less than the rounding of coordinates makes.
 _CRUMB_MM3 = 1e-3
 
@@ -61,8 +60,8 @@ def support_blocker(
         return None
     outside = Surface.of(solid)
     raised = hollowable_volume.translate((0.0, 0.0, step_mm))
-    for stride, share in _COARSENESS:
-        drawn = isosurface(_around_cavities(field, stride, profile.wall_mm, level_mm), level_mm)
+    drawn = isosurface(_around_cavities(field, profile.wall_mm, level_mm), level_mm)
+    for share in _COARSENESS:
         try:
             blocker = quantized(drawn.simplify(share * (level_mm - least_mm)))
         except GeometryError:  # it touches itself; a finer one may not
@@ -81,16 +80,17 @@ def without_bores(blocker: Manifold, bores: Manifold, profile: Profile) -> Manif
     return blocker - bores - bores.translate((0.0, 0.0, step_mm))
 
 
-def _around_cavities(field: DepthField, stride: int, wall_mm: float, level_mm: float) -> DepthField:
-    """Every ``stride``-th cell of a field, above the level only within a wall of a cavity."""
+def _around_cavities(field: DepthField, wall_mm: float, level_mm: float) -> DepthField:
+    """A field above a level only within a wall of a cavity."""
     from scipy.ndimage import maximum_filter
 
-    pitch_mm = field.grid.pitch_mm * stride
-    depth = field.depth_mm[::stride, ::stride, ::stride]
+    pitch_mm, depth = field.grid.pitch_mm, field.depth_mm
     reach = 2 * int(np.ceil(wall_mm / pitch_mm)) + 1
     near = maximum_filter(depth, size=reach) > wall_mm
     kept = np.where(near, depth, np.minimum(depth, np.float32(level_mm - pitch_mm / 2)))
-    return DepthField(replace(field.grid, pitch_mm=pitch_mm, shape=kept.shape), kept)
+    around = DepthField(field.grid, kept)
+    lower_convex(around, level_mm)
+    return around
 
 
 def depth_mm(blocker: Manifold, outside: Manifold) -> tuple[float, tuple[float, float, float]]:
