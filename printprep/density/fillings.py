@@ -177,7 +177,8 @@ def _max_min(values: Float) -> tuple[float, Float, Float]:
         A_eq=np.append(np.ones(count), 0.0)[None],
         b_eq=[1.0],
         bounds=[(0, None)] * count + [(None, None)],
-        method="highs",
+        method="highs-ds",
+        options={"presolve": False},
     )
     multipliers = np.maximum(-result.ineqlin.marginals, 0)
     return float(result.x[-1] * scale), result.x[:-1], multipliers / multipliers.sum()
@@ -195,7 +196,8 @@ def _least_cost(costs: Float, values: Float) -> tuple[float, Float]:
         b_ub=np.zeros(len(values)),
         A_eq=np.ones((1, len(costs))),
         b_eq=[1.0],
-        method="highs",
+        method="highs-ds",
+        options={"presolve": False},
     )
     if result.status != 0:
         return float("inf"), np.zeros(len(values))
@@ -217,7 +219,8 @@ def _band_program(outside: Float, constraints: Float, moments: Float) -> tuple[F
         A_ub=-rows / scale,
         b_ub=constraints @ outside / scale,
         bounds=(0, 1),
-        method="highs",
+        method="highs-ds",
+        options={"presolve": False},
     )
     if result.status != 0:
         return None

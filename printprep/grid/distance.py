@@ -48,15 +48,29 @@ class Surface:
         return distance_to_mesh_mm(points, self.vertices, self.faces)
 
     def contains(self, points: Float) -> NDArray[np.bool_]:
-        """(k,) whether points (k, 3) mm lie inside, by the exact winding number along verticals.
+        """(k,) whether points (k, 3) mm lie inside, by the exact winding number along verticals."""
+        return self._inside(points[:, :2], np.arange(len(points)), points[:, 2])
 
-        The verticals are moved by a millionth of the surface's size, since symmetric models have
-        corners exactly above cell centres.
+    def contains_cells(self, grid: Grid, index: Int) -> NDArray[np.bool_]:
+        """(k,) whether the centres of cells lie inside; index : (k,) flat indices of the cells.
+
+        The cells of a column share one vertical.
+        """
+        points = points_mm(grid, index)
+        _, first, column = np.unique(index // grid.shape[2], return_index=True, return_inverse=True)
+        return self._inside(points[first, :2], np.ravel(column), points[:, 2])
+
+    def _inside(self, columns: Float, column_of: Int, z_mm: Float) -> NDArray[np.bool_]:
+        """(k,) whether points on verticals lie inside.
+
+        columns : (c, 2) mm;  column_of : (k,);  z_mm : (k,).  The verticals are moved by a
+        millionth of the surface's size, since symmetric models have corners exactly above cell
+        centres.
         """
         size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
-        jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, (len(points), 2)) * size
-        moved = np.column_stack([points[:, :2] + jitter, points[:, 2]])
-        result: NDArray[np.bool_] = winding_in_closed(moved, self.vertices, self.faces) > 0.5
+        jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, columns.shape) * size
+        winding = winding_in_closed(self.vertices, self.faces, columns + jitter, column_of, z_mm)
+        result: NDArray[np.bool_] = winding > 0.5
         return result
 
     def depth_mm(self, points: Float) -> Float:
@@ -84,7 +98,7 @@ def coarse_depth(surface: Surface, grid: Grid) -> DepthField:
     from scipy.ndimage import binary_dilation
 
     every = np.arange(np.prod(grid.shape))
-    inside = surface.contains(points_mm(grid, every)).reshape(grid.shape)
+    inside = surface.contains_cells(grid, every).reshape(grid.shape)
     near = binary_dilation(inside, structure=np.ones((3, 3, 3)), iterations=2)
     depth = np.full(grid.shape, -2 * grid.pitch_mm, dtype=np.float32)
     index = np.flatnonzero(near)
@@ -109,7 +123,7 @@ def refine(surface: Surface, field: DepthField, factor: int, level_mm: float) ->
     exact = surface.distance_mm(points)
     unsure = estimate <= slack
     outside = np.zeros(len(index), dtype=bool)
-    outside[unsure] = ~surface.contains(points[unsure])
+    outside[unsure] = ~surface.contains_cells(fine, index[unsure])
     depth.flat[index] = np.where(outside, -exact, exact)
     return DepthField(fine, depth)
 

@@ -87,7 +87,7 @@ def reweighed(interior: Interior, hollowable_volume: Manifold) -> Interior:
 def with_base(domain: Domain, base: Manifold) -> Domain:
     """The domain with the voxels of a base marked."""
     index = np.arange(domain.free.size)
-    inside = Surface.of(base).contains(points_mm(domain.grid, index)).reshape(domain.grid.shape)
+    inside = Surface.of(base).contains_cells(domain.grid, index).reshape(domain.grid.shape)
     return replace(domain, base=inside & (domain.body < 0))
 
 

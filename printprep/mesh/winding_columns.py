@@ -72,13 +72,11 @@ def winding_at(points: Float, vertices: Float, faces: Int) -> Float:
     return winding_in_columns(vertices, faces, points[:, :2], np.arange(len(points)), points[:, 2])
 
 
-def winding_in_closed(points: Float, vertices: Float, faces: Int) -> Float:
-    """(k,) winding numbers of scattered points (k, 3) mm about a closed mesh, which needs no lids.
-
-    vertices : (n, 3) mm;  faces : (m, 3).
-    """
-    crossings = crossings_of(vertices, faces, points[:, :2])
-    return _summed(crossings, len(points), np.arange(len(points)), points[:, 2])
+def winding_in_closed(
+    vertices: Float, faces: Int, columns: Float, column_of: Int, z_mm: Float
+) -> Float:
+    """The same about a closed mesh, which needs no lids."""
+    return _summed(crossings_of(vertices, faces, columns), len(columns), column_of, z_mm)
 
 
 def _lids(faces: Int) -> Int:
