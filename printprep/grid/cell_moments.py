@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.arrays import runs
+from printprep.grid.grid import axis_mm
 from printprep.mesh.measure import arrays
 from printprep.mesh.winding_columns import crossings_of
 
@@ -53,16 +53,29 @@ def moments_in_cells(manifold: Manifold, grid: Grid, lines: int = 4) -> Float:
     bottom = grid.origin_mm[2] - grid.pitch_mm / 2
     first = np.clip(np.floor((low - bottom) / grid.pitch_mm).astype(int), 0, nz - 1)
     last = np.clip(np.floor((high - bottom) / grid.pitch_mm).astype(int), 0, nz - 1)
-    # Every dexel once for every cell that it reaches into.
-    dexel, place = runs(last - first + 1)
-    layer = place + first[dexel]
-    floor = bottom + layer * grid.pitch_mm
-    from_, to = np.maximum(low[dexel], floor), np.minimum(high[dexel], floor + grid.pitch_mm)
-    volume = np.maximum(to - from_, 0.0) * spacing**2
-    line = column[dexel]
-    i, j = np.divmod(line, ny * lines)
-    cell = np.ravel_multi_index((i // lines, j // lines, layer), grid.shape)
-    middle = (1.0, columns[line, 0], columns[line, 1], (from_ + to) / 2)
-    for row, coordinate in enumerate(middle):
-        result[row] = np.bincount(cell, volume * coordinate, nx * ny * nz).reshape(grid.shape)
+    i, j = np.divmod(column, ny * lines)
+    pillar = np.ravel_multi_index((i // lines, j // lines), (nx, ny))
+    weights = (np.ones(len(column)), columns[column, 0], columns[column, 1])
+
+    # The cells in which a dexel begins and ends
+    begins = np.minimum(high, bottom + (first + 1) * grid.pitch_mm)
+    split = last > first
+    ends = bottom + last[split] * grid.pitch_mm
+    cell = np.concatenate([pillar * nz + first, (pillar * nz + last)[split]])
+    length = np.concatenate([begins - low, high[split] - ends])
+    middle = np.concatenate([low + begins, ends + high[split]]) / 2
+    for row, weight in enumerate(weights):
+        both = np.concatenate([weight, weight[split]]) * length
+        result[row] = np.bincount(cell, both, nx * ny * nz).reshape(grid.shape)
+    result[3] = np.bincount(cell, length * middle, nx * ny * nz).reshape(grid.shape)
+
+    # The cells between, which it fills from floor to ceiling: counted up from the bottom
+    edge = np.concatenate([pillar * nz + first + 1, pillar * nz + last])[np.tile(split, 2)]
+    for row, weight in enumerate(weights):
+        steps = np.concatenate([weight, -weight])[np.tile(split, 2)]
+        full = np.bincount(edge, steps, nx * ny * nz).reshape(grid.shape).cumsum(axis=2)
+        result[row] += full * grid.pitch_mm
+        if row == 0:
+            result[3] += np.rint(full) * grid.pitch_mm * axis_mm(grid, 2)
+    result *= spacing**2
     return result

@@ -9,12 +9,14 @@ refine by the same idea.)
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from printprep.grid.grid import points_mm, subdivided
-from printprep.mesh.measure import arrays, distance_to_mesh_mm
+from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.measure import arrays
 from printprep.mesh.winding_columns import winding_in_closed
 from printprep.types import Grid
 
@@ -44,8 +46,12 @@ class Surface:
         return Surface(*arrays(manifold))
 
     def distance_mm(self, points: Float) -> Float:
-        """(k,) mm, unsigned exact distance of points (k, 3) mm to the surface."""
-        return distance_to_mesh_mm(points, self.vertices, self.faces)
+        """(k,) mm, unsigned exact distance of points (k, 3) mm to the surface, inf if empty."""
+        return self._tree.nearest(points)[0] if len(self.faces) else np.full(len(points), np.inf)
+
+    @cached_property
+    def _tree(self) -> SurfaceTree:
+        return SurfaceTree(self.vertices, self.faces)
 
     def contains(self, points: Float) -> NDArray[np.bool_]:
         """(k,) whether points (k, 3) mm lie inside, by the exact winding number along verticals."""

@@ -118,7 +118,7 @@ def _farthest_reaching(sets: SetCover, nodes: Float, members: MemberSizes) -> In
     from scipy.spatial import cKDTree
 
     points, count = sets.points_mm, min(NEIGHBOURS, len(nodes))
-    near = cKDTree(nodes).query(points, count)[1].reshape(len(points), count)
+    near = cKDTree(nodes).query(points, count, workers=-1)[1].reshape(len(points), count)
     away = points[:, None, :] - nodes[near]
     d = np.hypot(away[..., 0], away[..., 1])
     beyond = members.radius_mm - OVERLAP_MM + away[..., 2] * members.tan - d
@@ -167,7 +167,7 @@ def _neighbours(nodes: Float, tops: Float) -> tuple[Int, Int]:
 
     key = np.column_stack([nodes[:, :2], tops])
     count = min(NEIGHBOURS + 1, len(key))
-    found = cKDTree(key).query(key, count)[1].reshape(len(key), count)
+    found = cKDTree(key).query(key, count, workers=-1)[1].reshape(len(key), count)
     pairs = np.stack([np.repeat(np.arange(len(key)), count), found.ravel()], axis=1)
     pairs = np.unique(np.sort(pairs, axis=1), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
