@@ -28,7 +28,7 @@ from rows import Row, markdown_lines, measured_rows, table_parser
 from printprep.errors import PrintprepError, ToolError
 from printprep.gcode.measure import measure_gcode
 from printprep.mesh.write import to_bytes
-from printprep.output.prusa_keys import wall_keys
+from printprep.output.prusa_keys import wall_keys, without_columns
 from printprep.pipeline.options import Placement
 from printprep.pipeline.prepare import prepare
 from printprep.profiles import Profile, load_profile
@@ -88,7 +88,12 @@ def measured(path: Path, up: str, chosen: Namespace, profile: Profile, slicer: S
         x, y, _ = profile.printer.bed_mm
         model.write_bytes(to_bytes(prepared.solid.manifold.translate((x / 2, y / 2, 0)), ".stl"))
         settings = profile_settings(profile)
-        infill = {**settings, **wall_keys(profile), "fill_density": "15%", "fill_pattern": "gyroid"}
+        infill = {
+            **without_columns(settings),
+            **wall_keys(profile),
+            "fill_density": "15%",
+            "fill_pattern": "gyroid",
+        }
         row |= sliced("part", slicer, part, settings, folder)
         with contextlib.suppress(ToolError):  # a foot that is a point has no layer
             row |= sliced("gyroid", slicer, model, infill, folder)

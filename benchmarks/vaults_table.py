@@ -36,7 +36,7 @@ from printprep.errors import ToolError
 from printprep.gcode.measure import measure_gcode
 from printprep.mesh.measure import shells
 from printprep.mesh.write import to_bytes
-from printprep.output.prusa_keys import wall_keys
+from printprep.output.prusa_keys import wall_keys, without_columns
 from printprep.overhang.limits import printer_acceptance
 from printprep.overhang.rule import unsupported_overhangs
 from printprep.pipeline.hollow import hollow_with
@@ -158,7 +158,12 @@ def prints(
     settings = profile_settings(profile)
     row = {f"part_{key}": value for key, value in sliced(slicer, part, settings, folder).items()}
     for pattern in INFILLS:
-        infill = {**settings, **wall_keys(profile), "fill_density": "15%", "fill_pattern": pattern}
+        infill = {
+            **without_columns(settings),
+            **wall_keys(profile),
+            "fill_density": "15%",
+            "fill_pattern": pattern,
+        }
         try:
             found = sliced(slicer, model, infill, folder)
         except ToolError:

@@ -90,22 +90,34 @@ def _tell(pipe: int | None) -> None:
 def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
     """Where a signal came in a callback, which can pass no error on, let it come again."""
     if isinstance(unraisable.exc_value, Terminated) and hasattr(signal, "setitimer"):
-        number = unraisable.exc_value.number
-
-        def again(_number: int, _frame: FrameType | None) -> None:
-            raise Terminated(number)
-
-        signal.signal(signal.SIGALRM, again)
-        signal.setitimer(signal.ITIMER_REAL, 0.01)
+        _come_again(unraisable.exc_value.number)
     else:
         sys.__unraisablehook__(unraisable)
 
 
-def _stop(number: int, _frame: FrameType | None) -> None:
+def _stop(number: int, frame: FrameType | None) -> None:
     """End the run once: while it ends, further signals do not disturb it."""
     for each in _SIGNALS:
         signal.signal(each, signal.SIG_IGN)
-    raise Terminated(number)
+    if hasattr(signal, "setitimer") and _imports(frame):
+        _come_again(number)
+    else:
+        raise Terminated(number)
+
+
+def _come_again(number: int) -> None:
+    """Let a signal come again in a moment."""
+    signal.signal(signal.SIGALRM, lambda _number, frame: _stop(number, frame))
+    signal.setitimer(signal.ITIMER_REAL, 0.01)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a module is being loaded: native ones end the process if their loading raises."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _on_signals(handler: object) -> None:

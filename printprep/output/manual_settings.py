@@ -49,6 +49,7 @@ _VOCABULARIES: Mapping[str, _Vocabulary] = {
             "fill_pattern": ("rectilinear", "Sparse infill pattern Rectilinear"),
             "support_material_buildplate_only": ("1", "Support: On build plate only"),
             "perimeters": ("", "Wall loops {}"),
+            "small_perimeter_speed": ("", None),  # half of an outer wall's speed by default
         },
         ("Elephant foot compensation 0 mm", "Slicing mode Regular"),
     ),
@@ -62,6 +63,7 @@ _VOCABULARIES: Mapping[str, _Vocabulary] = {
             "fill_pattern": ("rectilinear", None),  # at 100 % it is all skin
             "support_material_buildplate_only": ("1", "Support Placement: Touching Buildplate"),
             "perimeters": ("", "Wall Line Count {}"),
+            "small_perimeter_speed": ("", None),  # small loops are not slowed down
         },
         ("Initial Layer Horizontal Expansion 0 mm", "Remove All Holes off"),
     ),
@@ -75,6 +77,7 @@ _VOCABULARIES: Mapping[str, _Vocabulary] = {
             "fill_pattern": ("rectilinear", "infill of straight lines"),
             "support_material_buildplate_only": ("1", "supports from the build plate only"),
             "perimeters": ("", "{} perimeters"),
+            "small_perimeter_speed": ("", None),
         },
         ("nothing that shrinks the first layer", "nothing that closes holes"),
     ),

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 from printprep.cavity.surface import cavity_surface
 from printprep.cavity.ties import tied
 from printprep.errors import UsageError
+from printprep.output.prusa_keys import FOR_COLUMNS
 from printprep.supports.blocker import support_blocker
 from printprep.supports.policy import supported, vault_choice
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from manifold3d import Manifold
 
     from printprep.density.program import Program
@@ -97,6 +100,8 @@ def _vaulted(
     volume, supports = supported(deep, profile, choice)
     sure = blocker is not None or not (supports.unsupported_mm2 > 0 or supports.islands)
     kept = _without_plate_only(profile) if sure else profile
+    if supports.columns and options.blocker:
+        kept = _with_settings(kept, {**FOR_COLUMNS, **kept.slicer.object_settings})
     return Hollowable(volume, deep, depths, supports, blocker, kept)
 
 
@@ -107,5 +112,10 @@ def _without_plate_only(profile: Profile) -> Profile:
     """
     kept = dict(profile.slicer.object_settings)
     kept.pop("support_material_buildplate_only", None)
-    slicer = profile.slicer.model_copy(update={"object_settings": kept})
+    return _with_settings(profile, kept)
+
+
+def _with_settings(profile: Profile, settings: Mapping[str, str]) -> Profile:
+    """The profile with other settings for the slicer."""
+    slicer = profile.slicer.model_copy(update={"object_settings": dict(settings)})
     return profile.model_copy(update={"slicer": slicer})

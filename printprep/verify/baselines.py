@@ -71,12 +71,13 @@ def slice_baselines(
     from printprep.gcode.measure import measure_sliced
     from printprep.gcode.stability import tilt_as_printed
     from printprep.mesh.write import to_bytes
-    from printprep.output.prusa_keys import wall_keys
+    from printprep.output.prusa_keys import wall_keys, without_columns
 
     stl = folder / "model.stl"
     stl.write_bytes(to_bytes(model, ".stl"))
     gcode = folder / "baseline.gcode"
     baselines = []
+    settings = without_columns(settings)
     for name, infill in _BASELINES:
         program.slice(stl, gcode, {**settings, **wall_keys(part.profile), **infill}, load)
         printed = measure_sliced(gcode, program.name)

@@ -88,4 +88,4 @@ def test_an_error_in_a_waiting_stage_comes_through_and_leaves_no_line(monkeypatc
     with pytest.raises(ZeroDivisionError), Spinner().stage("solve"):
         raise ZeroDivisionError
     assert screen.getvalue() == ""
-    assert threading.active_count() == threads
+    assert threading.active_count() <= threads  # one that another test began may end meanwhile
