@@ -233,8 +233,13 @@ class Program:
     def _fillings(self, numbers: tuple[int, ...]) -> tuple[NDArray[np.intp], Fillings]:
         """The free voxels (n,) of bodies, by index, and their fillings."""
         if numbers not in self._known:
-            voxels = np.flatnonzero(np.isin(self._body_of_voxel, numbers))
-            self._known[numbers] = voxels, Fillings(self.interior.moments[:, voxels])
+            moments = self.interior.moments
+            if len(numbers) == len(self.bodies):
+                voxels = np.arange(moments.shape[1])
+            else:
+                voxels = np.flatnonzero(np.isin(self._body_of_voxel, numbers))
+                moments = moments[:, voxels]
+            self._known[numbers] = voxels, Fillings(moments)
         return self._known[numbers]
 
 

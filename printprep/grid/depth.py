@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.grid.balls import deepest_points
-from printprep.grid.distance import LIPSCHITZ, DepthField, Surface, coarse_depth, refine
-from printprep.grid.grid import block_around, cropped, grid_over
+from printprep.grid.distance import LIPSCHITZ, DepthField, Surface, coarse_depth, refine, signed
+from printprep.grid.grid import block_around, coarsened, cropped, grid_over
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -34,18 +34,25 @@ MOST_FINE_CELLS = 384
 class Depths:
     """Depth below a solid's surface, in mm, positive inside.
 
-    coarse : on the grid of the optimization.
-    field : several times finer, over the block that holds all points deeper than the wall; pockets
-    too small for the minimum feature are closed already.  None where no point is that deep.
+    coarse : on the grid of the optimization; on a grid finer than the field only its sign is exact.
+    field : of cells a fraction of a wall wide, over the block that holds all points deeper than the
+    wall; pockets too small for the minimum feature are closed already.  None where no point is that
+    deep.
+    measured : on the grid that distances were measured on, where that is wider than ``coarse``.
     """
 
     coarse: DepthField
     field: DepthField | None
+    measured: DepthField | None = None
 
     @property
     def grid(self) -> Grid:
         """The grid of the optimization."""
         return self.coarse.grid
+
+    def for_estimates(self) -> Depths:
+        """The same on the widest grid, for what needs no fine one."""
+        return self if self.measured is None else Depths(self.measured, self.field)
 
 
 def measure_depths(
@@ -71,11 +78,20 @@ def measure_depths(
     box = np.array(solid.manifold.bounding_box())
     # A base grows no wider than a model is long: small models would else drown in margin.
     margin_mm = min(margin_mm, float((box[3:] - box[:3]).max()))
-    coarse = coarse_depth(surface, grid_over(box[:3], box[3:], resolution, margin_mm))
-    field = _fine_field(surface, coarse, wall_mm, wall_mm / cells_per_wall)
+    grid = grid_over(box[:3], box[3:], resolution, margin_mm)
+    wide = None
+    cell_mm = max(wall_mm / cells_per_wall, max(grid.shape) * grid.pitch_mm / MOST_FINE_CELLS)
+    if grid.pitch_mm > cell_mm:
+        coarse = coarse_depth(surface, grid)
+        field = _fine_field(surface, coarse, wall_mm, cell_mm)
+    else:
+        # The grid is finer than the surface needs: distances are measured on one that is not
+        wide = coarse_depth(surface, coarsened(grid, 2 * _largest_power(cell_mm / grid.pitch_mm)))
+        field = _fine_field(surface, wide, wall_mm, cell_mm)
+        coarse = signed(surface, wide, grid)
     if field is not None:
         field = close_small_pockets(surface, field, wall_mm, min_feature_mm)
-    return Depths(coarse, field)
+    return Depths(coarse, field, wide)
 
 
 def _fine_field(
@@ -88,11 +104,14 @@ def _fine_field(
         return None
     block = block_around(maybe, margin=1)
     field = DepthField(cropped(coarse.grid, block), coarse.depth_mm[block])
-    longest = max(coarse.grid.shape) * pitch
-    target = max(cell_mm, longest / MOST_FINE_CELLS)
-    for factor in _factors(pitch / target):
+    for factor in _factors(pitch / cell_mm):
         field = refine(surface, field, factor, wall_mm)
     return field if bool((field.depth_mm > wall_mm).any()) else None
+
+
+def _largest_power(ratio: float) -> int:
+    """The largest power of two that is at most a ratio, 1 or more."""
+    return int(2 ** np.floor(np.log2(ratio)))
 
 
 def _factors(ratio: float) -> tuple[int, ...]:

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.grid.grid import points_mm, subdivided
+from printprep.grid.grid import axis_mm, points_mm, subdivided
 from printprep.mesh.aabb_tree import SurfaceTree
 from printprep.mesh.measure import arrays
-from printprep.mesh.winding_columns import winding_in_closed
+from printprep.mesh.winding_columns import crossings_of, winding_in_closed
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -66,18 +66,39 @@ class Surface:
         _, first, column = np.unique(index // grid.shape[2], return_index=True, return_inverse=True)
         return self._inside(points[first, :2], np.ravel(column), points[:, 2])
 
+    def inside_grid(self, grid: Grid) -> NDArray[np.bool_]:
+        """(nx, ny, nz) whether the centre of each cell lies inside."""
+        nx, ny, nz = grid.shape
+        x, y = (axis_mm(grid, axis) for axis in (0, 1))
+        columns = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+        found = crossings_of(self.vertices, self.faces, self._jittered(columns))
+        # A crossing counts for all cells below it
+        last = np.floor((found.z_mm - grid.origin_mm[2]) / grid.pitch_mm).astype(np.int64)
+        reached = last >= 0
+        winding = np.zeros((nx * ny, nz), dtype=np.int16)
+        at = (found.column[reached], np.minimum(last[reached], nz - 1))
+        np.add.at(winding, at, found.sign[reached].astype(np.int16))
+        above = winding[:, ::-1].cumsum(axis=1, dtype=np.int16)[:, ::-1]
+        result: NDArray[np.bool_] = (above > 0).reshape(grid.shape)
+        return result
+
     def _inside(self, columns: Float, column_of: Int, z_mm: Float) -> NDArray[np.bool_]:
         """(k,) whether points on verticals lie inside.
 
-        columns : (c, 2) mm;  column_of : (k,);  z_mm : (k,).  The verticals are moved by a
-        millionth of the surface's size, since symmetric models have corners exactly above cell
-        centres.
+        columns : (c, 2) mm;  column_of : (k,);  z_mm : (k,).
         """
-        size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
-        jitter = np.random.default_rng(0).uniform(-1e-6, 1e-6, columns.shape) * size
-        winding = winding_in_closed(self.vertices, self.faces, columns + jitter, column_of, z_mm)
+        columns = self._jittered(columns)
+        winding = winding_in_closed(self.vertices, self.faces, columns, column_of, z_mm)
         result: NDArray[np.bool_] = winding > 0.5
         return result
+
+    def _jittered(self, columns: Float) -> Float:
+        """Verticals (c, 2) mm moved by a millionth of the surface's size.
+
+        Symmetric models have corners exactly above cell centres.
+        """
+        size = float(np.ptp(self.vertices, axis=0).max()) if len(self.vertices) else 0.0
+        return columns + np.random.default_rng(0).uniform(-1e-6, 1e-6, columns.shape) * size
 
     def depth_mm(self, points: Float) -> Float:
         """(k,) mm, signed distance of points (k, 3) mm, positive inside."""
@@ -103,8 +124,7 @@ def coarse_depth(surface: Surface, grid: Grid) -> DepthField:
     """
     from scipy.ndimage import binary_dilation
 
-    every = np.arange(np.prod(grid.shape))
-    inside = surface.contains_cells(grid, every).reshape(grid.shape)
+    inside = surface.inside_grid(grid)
     near = binary_dilation(inside, structure=np.ones((3, 3, 3)), iterations=2)
     depth = np.full(grid.shape, -2 * grid.pitch_mm, dtype=np.float32)
     index = np.flatnonzero(near)
@@ -119,7 +139,7 @@ def refine(surface: Surface, field: DepthField, factor: int, level_mm: float) ->
     level_mm : the depth at which a surface will be extracted.
     """
     fine = subdivided(field.grid, factor)
-    depth = _upsample(field.depth_mm, factor)
+    depth = upsampled(field.depth_mm, factor)
     slack = LIPSCHITZ * field.grid.pitch_mm
     # Cells outside the band must stay right for their own sub-cells too: one more half diagonal.
     band = slack + LIPSCHITZ * fine.pitch_mm
@@ -134,7 +154,18 @@ def refine(surface: Surface, field: DepthField, factor: int, level_mm: float) ->
     return DepthField(fine, depth)
 
 
-def _upsample(values: Float32, factor: int) -> Float32:
+def signed(surface: Surface, field: DepthField, grid: Grid) -> DepthField:
+    """Depth on a finer grid: its sign is exact, its value interpolated.
+
+    field : on cells that are each a whole number of cells of ``grid`` wide, from the same corner.
+    """
+    factor = round(field.grid.pitch_mm / grid.pitch_mm)
+    nx, ny, nz = grid.shape
+    depth = np.abs(upsampled(field.depth_mm, factor)[:nx, :ny, :nz])
+    return DepthField(grid, np.where(surface.inside_grid(grid), depth, -depth))
+
+
+def upsampled(values: Float32, factor: int) -> Float32:
     """(nx·f, ny·f, nz·f) linear interpolation of (nx, ny, nz) at the centres of f³ sub-cells."""
     for axis in range(3):
         values = _upsample_axis(values, factor, axis)

@@ -41,6 +41,14 @@ def subdivided(grid: Grid, factor: int) -> Grid:
     return Grid(origin, pitch, (nx * factor, ny * factor, nz * factor))
 
 
+def coarsened(grid: Grid, factor: int) -> Grid:
+    """The grid of cells ``factor`` times as wide, from the same corner, that covers this one."""
+    pitch = grid.pitch_mm * factor
+    origin = grid.origin_mm + (pitch - grid.pitch_mm) / 2
+    nx, ny, nz = (-(-count // factor) for count in grid.shape)
+    return Grid(origin, pitch, (nx, ny, nz))
+
+
 def cropped(grid: Grid, block: tuple[slice, slice, slice]) -> Grid:
     """The grid of the cells in a block (slices along x, y, z with explicit start and stop)."""
     start = np.array([axis.start for axis in block])

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.grid.distance import DepthField, upsampled
 from printprep.grid.domain import Interior, interior_of
-from printprep.grid.grid import axis_mm
+from printprep.grid.grid import axis_mm, subdivided
 
 if TYPE_CHECKING:
     from printprep.arrays import Float
@@ -45,16 +46,26 @@ def moment_field_of(depths: Depths, level_mm: float) -> MomentField:
     field = depths.field
     if field is None:
         return moment_field
+    wider = round(field.grid.pitch_mm / grid.pitch_mm)
+    if wider > 1:
+        finer = subdivided(field.grid, wider)
+        field = DepthField(finer, upsampled(field.depth_mm, wider))
     fine = field.grid
     factor = round(grid.pitch_mm / fine.pitch_mm)
     middle = fine.origin_mm + (grid.pitch_mm - fine.pitch_mm) / 2
     first = np.rint((middle - grid.origin_mm) / grid.pitch_mm).astype(int)
-    nx, ny, nz = (count // factor for count in fine.shape)
-    block = np.s_[first[1] : first[1] + ny, first[2] : first[2] + nz]
     x, y, z = (axis_mm(fine, axis) for axis in range(3))
+    # The field may reach a little beyond the grid, where nothing is deep
+    nx, ny, nz = (
+        min(count // factor, most - start)
+        for count, most, start in zip(fine.shape, grid.shape, first.tolist(), strict=True)
+    )
+    y, z = y[: ny * factor], z[: nz * factor]
+    block = np.s_[first[1] : first[1] + ny, first[2] : first[2] + nz]
     for i in range(nx):  # slab by slab, because the field is large
         slab = slice(i * factor, (i + 1) * factor)
-        deeper = (field.depth_mm[slab].astype(float) - level_mm) / fine.pitch_mm
+        depth = field.depth_mm[slab, : ny * factor, : nz * factor].astype(float)
+        deeper = (depth - level_mm) / fine.pitch_mm
         share = np.clip(deeper + 0.5, 0.0, 1.0)
         above = np.concatenate([share[:, :, 1:], np.zeros_like(share[:, :, :1])], axis=2)
         lost = np.maximum(share - above, 0.0)

@@ -24,11 +24,11 @@ def alternative_fill(
     if profile.infill is None:
         return None
     base, grams_per_mm3 = filled.part.base, profile.material.density_g_cm3 / 1000
-    others = []
+    others, depths = [], filled.depths.for_estimates()
     for name, fill in FILLS.items():
         if name == chosen:
             continue
-        volume_mm3 = fill.estimate_mm3(prepared.solid, filled.depths, profile, base, lean)
+        volume_mm3 = fill.estimate_mm3(prepared.solid, depths, profile, base, lean)
         if volume_mm3 is not None:
             others.append(AlternativeFill(name, volume_mm3 * grams_per_mm3))
     return min(others, key=lambda other: other.mass_g, default=None)
