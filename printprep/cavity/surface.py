@@ -15,7 +15,7 @@ import numpy as np
 
 from printprep.cavity.fewer_triangles import with_fewer_triangles
 from printprep.grid.distance import DepthField
-from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, gap_mm
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
         from manifold3d import Manifold
 
         return Manifold()
-    outside = SurfaceTree(*arrays(solid))
+    outside = tree_of(*arrays(solid))
     field = DepthField(field.grid, field.depth_mm.copy())
     lower_convex(field, wall_mm)
     shares = list(SHARES)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.grid.grid import axis_mm, points_mm, subdivided
-from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.aabb_tree import SurfaceTree, tree_of
 from printprep.mesh.measure import arrays
 from printprep.mesh.winding_columns import crossings_of, winding_in_closed
 from printprep.types import Grid
@@ -51,7 +51,7 @@ class Surface:
 
     @cached_property
     def _tree(self) -> SurfaceTree:
-        return SurfaceTree(self.vertices, self.faces)
+        return tree_of(self.vertices, self.faces)
 
     def contains(self, points: Float) -> NDArray[np.bool_]:
         """(k,) whether points (k, 3) mm lie inside, by the exact winding number along verticals."""

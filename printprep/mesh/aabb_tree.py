@@ -9,6 +9,7 @@ for, rays go through libigl's tree too, about twenty times as slowly.
 from __future__ import annotations
 
 from functools import cached_property
+from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,21 @@ from printprep.mesh.measure import area_normals
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
+
+
+def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
+    """The search tree of a mesh; the trees of the last few meshes are kept.
+
+    vertices : (n, 3) mm;  faces : (m, 3).
+    """
+    vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+    faces = np.ascontiguousarray(faces, dtype=np.int64)
+    key = blake2b(vertices.data, digest_size=16).digest() + blake2b(faces.data).digest()
+    found = _KEPT.pop(key, None) or SurfaceTree(vertices, faces)
+    _KEPT[key] = found  # the last used are at the end
+    while len(_KEPT) > _MOST_KEPT:
+        del _KEPT[next(iter(_KEPT))]
+    return found
 
 
 class SurfaceTree:
@@ -109,3 +125,7 @@ class SurfaceTree:
         moved = (self.vertices - self._centre_mm).astype(np.float32)
         TriangleMesh(scene, moved, self.faces.astype(np.int32))
         return scene
+
+
+_MOST_KEPT = 3
+_KEPT: dict[bytes, SurfaceTree] = {}

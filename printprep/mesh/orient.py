@@ -89,9 +89,12 @@ def _misplaced(pieces: list[_Piece], around: list[list[int]], sign: int) -> list
 def _turned_alike(vertices: Float, faces: Int) -> tuple[Int, int]:
     """Faces (m, 3) that agree across every edge with exactly two, and how many were turned."""
     edges = directed_edges(faces)
-    _, index, count = np.unique(
-        np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
+    size = int(faces.max(initial=0)) + 1
+    there, back = np.sort(edges @ np.array([size, 1])), np.sort(edges @ np.array([1, size]))
+    if (there[1:] != there[:-1]).all() and np.array_equal(there, back):
+        return faces.copy(), 0  # every edge once in each direction
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    _, index, count = np.unique(low * size + high, return_inverse=True, return_counts=True)
     forward = np.bincount(index.ravel(), weights=edges[:, 0] < edges[:, 1])
     if not ((count == 2) & (forward != 1)).any():
         return faces.copy(), 0

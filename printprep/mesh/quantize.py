@@ -14,7 +14,7 @@ import numpy as np
 from printprep.errors import GeometryError
 from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
-from printprep.mesh.weld import directed_edges, drop_collapsed
+from printprep.mesh.weld import directed_edges, drop_collapsed, unique_rows
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -80,10 +80,11 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     """
     points, corners = arrays(manifold)
     rounded = points.astype(np.float32).astype(np.float64) + 0.0  # −0 becomes 0
-    vertices, index = np.unique(rounded, axis=0, return_inverse=True)
-    faces = drop_collapsed(np.ravel(index)[corners])
-    used, inverse = np.unique(faces, return_inverse=True)
-    faces = inverse.reshape(-1, 3)
+    vertices, index = unique_rows(rounded)
+    faces = drop_collapsed(index[corners])
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces] = True
+    faces = (np.cumsum(used) - 1)[faces]
     first = faces.argmin(axis=1)[:, None]
     faces = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
     return vertices[used], faces[np.lexsort(faces.T[::-1])]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import area_normals, arrays
-from printprep.mesh.winding_columns import winding_in_columns
+from printprep.mesh.winding_columns import winding_in_closed, winding_in_columns
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -81,7 +81,7 @@ class Reference:
 
         slack_mm3 : volume that the method of the rung may lose (0 for exact ones).
         """
-        w = _winding(*arrays(manifold), self.columns, self.z_mm)
+        w = _winding(*arrays(manifold), self.columns, self.z_mm, closed=True)
         limit = _SHARE * self.volume_mm3 + slack_mm3
         decided = (self.winding <= _UNDECIDED[0]) | (self.winding >= _UNDECIDED[1])
         differs = float((decided & ((w > 0.5) != (self.winding > 0.5))).sum()) * self.cell_mm3
@@ -97,10 +97,13 @@ class Reference:
         return None
 
 
-def _winding(vertices: Float, faces: Int, columns: Float, z: Float) -> Float:
+def _winding(
+    vertices: Float, faces: Int, columns: Float, z: Float, *, closed: bool = False
+) -> Float:
     """(c, m) winding numbers at heights z (c, m) on columns (c, 2)."""
     column_of = np.repeat(np.arange(len(columns)), z.shape[1])
-    return winding_in_columns(vertices, faces, columns, column_of, z.ravel()).reshape(z.shape)
+    method = winding_in_closed if closed else winding_in_columns
+    return method(vertices, faces, columns, column_of, z.ravel()).reshape(z.shape)
 
 
 def _jittered(low: Float, extents: Float) -> tuple[Float, Float]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import area_normals
 from printprep.mesh.weld import components, directed_edges, opposite_edges
 
@@ -52,7 +52,7 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
 
     vertices : (n, 3), x, y, z in mm;  faces : (m, 3).
     """
-    surface = SurfaceTree(vertices, faces)
+    surface = tree_of(vertices, faces)
     every = np.sort(directed_edges(faces), axis=1)
     _, first, same = np.unique(
         every[:, 0] * len(vertices) + every[:, 1], return_index=True, return_inverse=True

@@ -82,7 +82,13 @@ def winding_in_closed(
 def _lids(faces: Int) -> Int:
     """(k, 2) directed edges that faces (m, 3) lack to be closed, each as often as it is missing."""
     edges = directed_edges(faces)
-    ends, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    size = int(faces.max(initial=0)) + 1
+    there, back = np.sort(edges @ np.array([size, 1])), np.sort(edges @ np.array([1, size]))
+    if np.array_equal(there, back):
+        return np.zeros((0, 2), dtype=np.int64)
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    keys, index = np.unique(low * size + high, return_inverse=True)
+    ends = np.stack(np.divmod(keys, size), axis=1)
     excess = np.bincount(
         index.ravel(), weights=np.where(edges[:, 0] < edges[:, 1], 1, -1), minlength=len(ends)
     ).astype(np.int64)

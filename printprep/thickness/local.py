@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.aabb_tree import SurfaceTree
+from printprep.mesh.aabb_tree import SurfaceTree, tree_of
 from printprep.mesh.measure import area_normals
 from printprep.mesh.sample import points_on_surface
 
@@ -84,9 +84,7 @@ def local_thickness(
     facets = _unit_normals(vertices, faces)
     if gaps:
         normals, facets = -normals, -facets
-    probe = _Probe(
-        SurfaceTree(vertices, faces), facets, points, normals, float(np.radians(taper_deg))
-    )
+    probe = _Probe(tree_of(vertices, faces), facets, points, normals, float(np.radians(taper_deg)))
     everything = np.arange(len(points))
     bound = min(at_most_mm, float(np.ptp(vertices, axis=0).max()))
     ball = _Balls.of(len(points), bound / 2)
