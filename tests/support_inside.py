@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from printprep.mesh.measure import arrays, winding
 from printprep.mesh.quantize import quantized
 from printprep.output.item import solid_item
+from printprep.output.prusa_keys import blocker_keys
 from printprep.profiles import Profile
 from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import FILAMENT_DIAMETER_MM, profile_settings
@@ -66,6 +67,7 @@ def supports_g(
         "support_material_threshold": f"{threshold_deg:g}",
         "support_material_style": style,
         "support_material_buildplate_only": "0",
+        **({} if blocker is None else blocker_keys(profile)),
     }
     item = solid_item(quantized(part), "part", profile, blocker=blocker)
     with tempfile.TemporaryDirectory() as folder:

@@ -50,6 +50,7 @@ _VOCABULARIES: Mapping[str, _Vocabulary] = {
             "support_material_buildplate_only": ("1", "Support: On build plate only"),
             "perimeters": ("", "Wall loops {}"),
             "small_perimeter_speed": ("", None),  # half of an outer wall's speed by default
+            "support_material_closing_radius": ("", None),
         },
         ("Elephant foot compensation 0 mm", "Slicing mode Regular"),
     ),

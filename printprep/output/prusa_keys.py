@@ -20,6 +20,8 @@ DENSE = {"fill_density": "100%", "fill_pattern": "rectilinear"}
 # Three fifths of it are about the speed of outer walls (half in the defaults, 25 of 45 and 35 of
 # 60 mm/s in PrusaResearch.ini), so that nothing outside prints faster than an outer wall.
 FOR_COLUMNS: Mapping[str, str] = {"small_perimeter_speed": "60%"}
+# PrusaSlicer's snug supports close gaps between their pieces that are narrower than twice this.
+_CLOSING_MM = 2.0
 # Keeps a slicer's supports out of cavities, so an infill print does not need it.
 _FOR_CAVITIES = "support_material_buildplate_only"
 
@@ -58,6 +60,15 @@ def object_keys(profile: Profile) -> dict[str, str]:
         "fill_density": f"{100 * profile.infill.density:g}%",
         "fill_pattern": profile.infill.pattern,
     }
+
+
+def blocker_keys(profile: Profile) -> dict[str, str]:
+    """The keys of a part with a support blocker.
+
+    Snug supports on both sides of a limb would close over it, and so be printed in its cavity too.
+    They do not where they close less than the two walls that are between.
+    """
+    return {"support_material_closing_radius": f"{min(_CLOSING_MM, profile.wall_mm):g}"}
 
 
 def without_columns(settings: Mapping[str, str]) -> dict[str, str]:

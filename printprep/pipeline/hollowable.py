@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from printprep.cavity.surface import cavity_surface
 from printprep.cavity.ties import tied
 from printprep.errors import UsageError
-from printprep.output.prusa_keys import FOR_COLUMNS
+from printprep.output.prusa_keys import FOR_COLUMNS, blocker_keys
 from printprep.supports.blocker import support_blocker
 from printprep.supports.policy import supported, vault_choice
 
@@ -94,6 +94,10 @@ def _vaulted(
                 "Use --vaults slicer, or a thicker --wall.",
             )
         choice = "slicer"
+    if blocker is not None:
+        profile = _with_settings(
+            profile, {**blocker_keys(profile), **profile.slicer.object_settings}
+        )
     if choice == "none":
         kept = profile if blocker is None else _without_plate_only(profile)
         return Hollowable(deep, deep, depths, None, blocker, kept)
