@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 # A hit this close to an end of the edge, as a share of the mesh's size, only touches.
 _TOUCH = 1e-5
-# So does an edge that ends this close beyond the triangle: slivers reach as far, by the tolerance
-# of the boolean kernel.
+# So does an edge that ends this close beyond the triangle, or meets one that is this thin: slivers
+# reach as far, by the tolerance of the boolean kernel.
 _SHALLOW = 5e-5
 # Neighbouring faces whose normals have a smaller cosine than this may be folded over; they
 # intersect faces at most this many rings of triangles away.
@@ -62,9 +62,11 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
     length = np.linalg.norm(along, axis=1)
     touch = _TOUCH * float(np.ptp(vertices, axis=0).max())
     going = np.flatnonzero(length > 3 * touch)
-    beside = vertices[edges[going, 0]] + touch * _away(vertices, faces, first, same)[going]
-    unit = along[going] / length[going, None]
-    going = going[surface.may_hit(beside, unit, length[going])]
+    away = touch * _away(vertices, faces, first, same)[going]
+    unit, starts = along[going] / length[going, None], vertices[edges[going, 0]]
+    met = surface.may_hit(starts + away, unit, length[going])
+    met |= surface.may_hit(starts - away, unit, length[going])
+    going = going[met]
     done = np.full(len(edges), touch)
     hit = np.full(len(edges), -1, dtype=np.int64)
     for _ in range(_ROUNDS):
@@ -79,11 +81,15 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
         going = going[inside & own]
         done[going] += touch
     found = np.flatnonzero(hit >= 0)
-    found = found[_beyond(vertices, edges[found], faces[hit[found]]) > _SHALLOW / _TOUCH * touch]
+    at = vertices[edges[found, 0]] + (done[found] / length[found])[:, None] * along[found]
+    least = _SHALLOW / _TOUCH * touch
+    deep = _beyond(vertices, edges[found], faces[hit[found]]) > least
+    deep &= _beyond(vertices, edges[found], _across(vertices, faces, hit[found], at, least)) > least
+    deep &= _thickness(vertices[faces[hit[found]]]) > least
+    found, at = found[deep], at[deep]
     piece = np.zeros(len(vertices), dtype=np.int64)
     for number, group in enumerate(components(faces, len(vertices))):
         piece[faces[group]] = number
-    at = vertices[edges[found, 0]] + (done[found] / length[found])[:, None] * along[found]
     return SelfIntersections(
         edge=edges[found],
         face=hit[found],
@@ -141,3 +147,34 @@ def _beyond(vertices: Float, edges: Int, faces: Int) -> Float:
     ends: Float = np.abs(np.einsum("ij,ikj->ik", normal, vertices[edges] - corners[:, :1]))
     nearer: Float = ends.min(axis=1)
     return nearer
+
+
+def _across(vertices: Float, faces: Int, hit: Int, at: Float, rim_mm: float) -> Int:
+    """(k, 3) the triangles hit, or where a hit is on the rim of one, the triangle across it.
+
+    Rounding decides which of the two a ray hits: what is said of one has to hold for both.
+    hit : (k,) faces;  at : (k, 3) mm, where.
+    """
+    result: Int = faces[hit].copy()
+    edges = np.sort(directed_edges(faces), axis=1)
+    keys = edges[:, 0] * len(vertices) + edges[:, 1]
+    order = np.argsort(keys, kind="stable")
+    corners = vertices[result]
+    for index in range(3):
+        start, way = corners[:, index], corners[:, (index + 1) % 3] - corners[:, index]
+        length = np.maximum(np.linalg.norm(way, axis=1), np.finfo(np.float64).tiny)
+        rim = np.flatnonzero(np.linalg.norm(np.cross(at - start, way), axis=1) / length <= rim_mm)
+        first = np.searchsorted(keys[order], keys[3 * hit[rim] + index])
+        pair = order[np.minimum(first[:, None] + [0, 1], len(order) - 1)]  # the edge's two rows
+        beside = np.where(pair[:, 0] // 3 == hit[rim], pair[:, 1], pair[:, 0])
+        shared = keys[beside] == keys[3 * hit[rim] + index]
+        result[rim[shared]] = faces[beside[shared] // 3]
+    return result
+
+
+def _thickness(corners: Float) -> Float:
+    """(k,) mm, least height of triangles (k, 3 corners, 3 xyz)."""
+    doubled = np.linalg.norm(area_normals(corners), axis=1)
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    result: Float = doubled / np.maximum(longest, np.finfo(np.float64).tiny)
+    return result
