@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # A chord of a cell lies so much of a second difference outside the level set: an eighth for the
 # place of its ends, on edges of the cell, and up to a quarter for its middle, along a diagonal.
 # Samples and corrections see to the last third.
-CHORD = 0.25
+CHORD = 0.2
 MOST_DRAWINGS = 8
 # No wall is thinner than asked by more, with room for the rounding of written coordinates.
 PROMISED_MM = 0.045
@@ -34,8 +34,8 @@ PROMISED_MM = 0.045
 FLAT_MM = 0.01
 # Shares of the triangles that are tried, the fewest first.
 SHARES = (1 / 8, 1 / 4, 1 / 2, 1.0)
-# Most of the material around the cavity that fewer triangles may add: half a percent.
-LOST_SHARE = 0.005
+# Most of the material around the cavity that fewer triangles may add: a third of a percent.
+LOST_SHARE = 0.003
 
 
 def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) -> Manifold:

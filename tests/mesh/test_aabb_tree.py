@@ -1,0 +1,76 @@
+"""Rays through Embree and through libigl, and the trees that are kept."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from examples import examples
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold
+
+from printprep.mesh.aabb_tree import SurfaceTree, tree_of
+from printprep.mesh.measure import arrays
+
+
+def ball(radius: float = 10.0) -> tuple[np.ndarray, np.ndarray]:
+    return arrays(Manifold.sphere(radius, 64))
+
+
+def without_embree(tree: SurfaceTree) -> SurfaceTree:
+    tree.__dict__["_scene"] = None
+    return tree
+
+
+@pytest.mark.parametrize("embree", [True, False])
+def test_a_ray_across_a_cube_is_as_long_as_its_side(embree: bool) -> None:
+    tree = SurfaceTree(*arrays(Manifold.cube((2, 3, 4))))
+    if not embree:
+        without_embree(tree)
+    starts = np.array([[0.7, 1.1, 0.0], [0.3, 0.0, 1.3], [0.0, 1.9, 2.2], [1.0, 1.0, 9.0]])
+    along = np.array([[0, 0, 1.0], [0, 1.0, 0], [1.0, 0, 0], [0, 0, 1.0]])
+    far, face = tree.first_hit(starts, along)
+    assert far[:3] == pytest.approx([4, 3, 2], abs=1e-6)
+    assert far[3] == np.inf and face[3] == -1
+    assert (face[:3] >= 0).all()
+
+
+@examples(20)
+@given(st.integers(0, 2**32 - 1), st.floats(1, 500), st.floats(-1e3, 1e3))
+def test_both_ways_find_the_same_hits(seed: int, radius: float, away: float) -> None:
+    rng = np.random.default_rng(seed)
+    vertices, faces = ball(radius)
+    tree = SurfaceTree(vertices + away, faces)
+    starts = away + rng.uniform(-1.5, 1.5, (200, 3)) * radius
+    along = rng.normal(size=(200, 3))
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    far, _ = tree.first_hit(starts, along)
+    exact, _ = tree.first_hit_exactly(starts, along)
+    hit = np.isfinite(exact)
+    assert (np.isfinite(far) == hit).mean() > 0.99  # a ray may graze the silhouette
+    both = hit & np.isfinite(far)
+    assert np.allclose(far[both], exact[both], atol=1e-3 * radius)
+    # What is hit within a length may be hit; what surely is not, is not
+    shorter = both & (exact < 0.9 * radius)
+    assert tree.may_hit(starts[shorter], along[shorter], np.full(shorter.sum(), radius)).all()
+    assert without_embree(tree).may_hit(starts, along, np.ones(200)).all()
+
+
+def test_a_hit_is_calculated_in_double_precision() -> None:
+    vertices, faces = arrays(Manifold.cube((1, 1, 1)))
+    tree = SurfaceTree(vertices + 1e4, faces)
+    start = np.array([[1e4 + 0.3, 1e4 + 0.6, 1e4 + 0.25]])
+    far, _ = tree.first_hit(start, np.array([[0.0, 0.0, 1.0]]))
+    assert far[0] == pytest.approx(0.75, abs=1e-9)
+
+
+def test_the_tree_of_the_same_mesh_is_the_same() -> None:
+    vertices, faces = ball()
+    first = tree_of(vertices, faces)
+    assert tree_of(vertices.copy(), faces.copy()) is first
+    moved = vertices.copy()
+    moved[0, 0] += 1e-9
+    assert tree_of(moved, faces) is not first
+    for radius in (1, 2, 3):  # the last three are kept
+        tree_of(*ball(radius))
+    assert tree_of(vertices, faces) is not first
