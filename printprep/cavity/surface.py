@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float
 
-# A chord of a cell lies so much of a second difference outside the level set: an eighth for the
-# place of its ends, on edges of the cell, and up to a quarter for its middle, along a diagonal.
-# Samples and corrections see to the last third.
+# On the mean a chord of a cell lies so much of a second difference outside the level set: an eighth
+# for the place of its ends, on edges of the cell, and up to a quarter for its middle, along a
+# diagonal.  What is left is corrected.
 CHORD = 0.2
 MOST_DRAWINGS = 8
 # No wall is thinner than asked by more, with room for the rounding of written coordinates.
