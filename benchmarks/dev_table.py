@@ -81,7 +81,7 @@ def measure(
         command = [sys.executable, "-m", "printprep", "hollow", str(model), "-o", str(part)]
         command += ["--up", up, "--size", str(size_mm), "--profile", profile, "--json"]
         command += [] if vaults else ["--no-self-support"]
-        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        ran = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
         row: Row = {"model": model.stem, "exit": ran.returncode, "stderr": ran.stderr}
         if ran.returncode != 0:
             return {**row, "error": ran.stdout}

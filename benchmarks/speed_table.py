@@ -114,7 +114,7 @@ print(os.waitstatus_to_exitcode(status), seconds, usage.ru_maxrss / 1024, file=s
 def run(arguments: Sequence[str]) -> tuple[float, float, str]:
     """Wall seconds, most memory in MiB, and standard output of one command of printprep."""
     command = [sys.executable, "-c", _STARTER, sys.executable, "-m", "printprep", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
     *said, last = done.stderr.splitlines()
     code, seconds, mib = last.split()
     if int(code) not in (0, 1):

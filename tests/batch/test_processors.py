@@ -27,7 +27,7 @@ print(len(before), counts, len(sets), sorted(sets)[0])
 def test_all_threads_have_the_same_share_however_often_it_is_asked(slots):
     code = CODE.format(slot=slots - 1, slots=slots)
     out = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+        [sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True, timeout=60
     ).stdout
     total, rest = int(out.split(" ", 1)[0]), out.split(" ", 1)[1]
     share = max(1, total // slots)

@@ -43,7 +43,7 @@ def test_the_shell_itself_reads_its_script(shell, shell_program, capsys, tmp_pat
     program = shell_program(shell)
     path = tmp_path / "script"
     path.write_text(script(shell, capsys), encoding="utf-8")
-    done = subprocess.run([program, "-n", str(path)], capture_output=True, text=True)
+    done = subprocess.run([program, "-n", str(path)], capture_output=True, encoding="utf-8")
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -109,7 +109,7 @@ def test_every_option_that_names_a_profile_completes_it():
 )
 def test_the_program_answers_the_script(shell, environment):
     done = subprocess.run(
-        [sys.executable, "-m", "printprep"], capture_output=True, text=True,
+        [sys.executable, "-m", "printprep"], capture_output=True, encoding="utf-8",
         env={**os.environ, **environment, "_PRINTPREP_COMPLETE": f"{shell}_complete"},
     )  # fmt: skip
     assert done.stderr == ""
@@ -135,7 +135,7 @@ def test_a_real_shell_completes(shell, shell_program, tmp_path, capsys):
     path = os.pathsep.join((str(tmp_path), os.environ["PATH"]))
     quiet = "--norc" if shell == "bash" else "--no-config"
     done = subprocess.run(
-        [found, quiet, "-c", LINE[shell]], capture_output=True, text=True,
+        [found, quiet, "-c", LINE[shell]], capture_output=True, encoding="utf-8",
         env={**os.environ, "PATH": path, "SCRIPT": str(tmp_path / "script")},
         cwd=Path(__file__).parents[2],
     )  # fmt: skip

@@ -22,7 +22,7 @@ on_one_worker = pytest.mark.xdist_group("hollowed cylinder")
 def program(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "printprep", *arguments],
-        capture_output=True, text=True, check=False, cwd=folder, encoding="utf-8", timeout=300,
+        capture_output=True, encoding="utf-8", check=False, cwd=folder, timeout=300,
     )  # fmt: skip
 
 

@@ -112,7 +112,7 @@ def test_behind_a_double_dash_nothing_is_an_option(ends_with, capsys):
 def test_the_installed_way_in_leaves_with_the_code():
     done = subprocess.run(
         [sys.executable, "-m", "printprep", "hollow", "no-such-file.stl", "--json"],
-        capture_output=True, text=True, check=False, encoding="utf-8",
+        capture_output=True, encoding="utf-8", check=False,
     )  # fmt: skip
     assert done.returncode == 3
     assert json.loads(done.stdout)["error"]["code"] == "input"

@@ -22,8 +22,7 @@ HEAVY = (
 
 def python(*arguments: str) -> str:
     done = subprocess.run(
-        [sys.executable, *arguments], capture_output=True, text=True, check=True, cwd=ROOT,
-        encoding="utf-8",
+        [sys.executable, *arguments], capture_output=True, encoding="utf-8", check=True, cwd=ROOT,
     )  # fmt: skip
     return done.stdout
 

@@ -266,7 +266,7 @@ class TestTheScriptItself:
         self.printprep(tmp_path, "print(sys.argv[1:]); sys.exit(4)")
         done = subprocess.run(
             [sys.executable, script, "hollow", "a b.stl"],
-            capture_output=True, text=True, check=False, cwd=tmp_path,
+            capture_output=True, encoding="utf-8", check=False, cwd=tmp_path,
         )  # fmt: skip
         assert (done.returncode, done.stdout, done.stderr) == (4, "['hollow', 'a b.stl']\n", "")
 
@@ -283,7 +283,7 @@ class TestTheScriptItself:
         )
         process = subprocess.Popen(
             [sys.executable, script, "hollow"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True, cwd=tmp_path, start_new_session=True,
+            encoding="utf-8", cwd=tmp_path, start_new_session=True,
         )  # fmt: skip
         with process:
             assert process.stdout.readline() == "ready\n"

@@ -45,7 +45,7 @@ def outcomes(tmp_path: Path):
         environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
         done = subprocess.run(
             [sys.executable, "-m", "pytest", "-v", "-p", "tiers", *options],
-            capture_output=True, text=True, check=False, cwd=tmp_path, env=environment,
+            capture_output=True, encoding="utf-8", check=False, cwd=tmp_path, env=environment,
         )  # fmt: skip
         lines = [line.split()[:2] for line in done.stdout.splitlines() if "::test_" in line]
         found = {

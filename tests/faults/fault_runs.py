@@ -25,7 +25,7 @@ def started(
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        text=True,
+        encoding="utf-8",
         env={**os.environ, MARK: mark, "TMPDIR": str(folder), **environment},
     )
 
@@ -42,7 +42,7 @@ def done(
         [*PROGRAM, *map(str, arguments)],
         cwd=folder,
         capture_output="stdout" not in options and "stderr" not in options,
-        text=True,
+        encoding="utf-8",
         check=False,
         timeout=120,
         env={**os.environ, "TMPDIR": str(folder), **(environment or {})},

@@ -175,7 +175,7 @@ def test_a_library_that_holds_the_interpreter_does_not_hold_up_the_end(
 ):
     begun = tmp_path / "begun"
     body = f"open({str(begun)!r}, 'w').close(); import ctypes; ctypes.PyDLL(None).sleep(60)"
-    run = subprocess.Popen(supervised(body), stderr=subprocess.PIPE, text=True)
+    run = subprocess.Popen(supervised(body), stderr=subprocess.PIPE, encoding="utf-8")
     while not begun.exists():
         assert run.poll() is None
         time.sleep(0.02)
@@ -197,7 +197,7 @@ def test_a_library_that_holds_the_interpreter_does_not_hold_up_the_end(
     ],
 )
 def test_a_library_that_ends_the_run_is_told(body: str, words: str):
-    run = subprocess.run(supervised(body), capture_output=True, text=True, check=False)
+    run = subprocess.run(supervised(body), capture_output=True, encoding="utf-8", check=False)
     assert run.returncode == 70
     assert clear(run.stderr) and words in run.stderr
 

@@ -161,5 +161,7 @@ def test_the_package_does_not_import_torch_or_skimage():
     code = (
         "import sys, printprep.generators; print({'torch', 'skimage', 'scipy'} & set(sys.modules))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True
+    )
     assert done.stdout.strip() == "set()"

@@ -220,7 +220,10 @@ def test_the_line_for_the_slicer_is_quoted_for_its_platform(monkeypatch: pytest.
     options = ["--part", "/home/it's/a part.3mf"]
     posix = setting_line(options, windows=False)
     echoed = subprocess.run(
-        ["sh", "-c", f"printf '%s\\n' {posix} /g.gcode"], capture_output=True, text=True, check=True
+        ["sh", "-c", f"printf '%s\\n' {posix} /g.gcode"],
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
     ).stdout.splitlines()
     assert echoed == ["/opt/my tools/python", "-m", "printprep", "hook", *options, "/g.gcode"]
     monkeypatch.setattr(sys, "executable", r"C:\Program Files\Python\python.exe")

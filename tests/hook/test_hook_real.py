@@ -61,7 +61,7 @@ def slice_with_hook(slicer: Path, model: Path, ini: Path) -> tuple[int, str, Pat
     command = [str(slicer), "--datadir", str(own), "--export-gcode", "--load", str(ini)]
     command += ["--center", "100,100", "--output", str(out), str(model)]
     done = subprocess.run(
-        command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
+        command, capture_output=True, encoding="utf-8", check=False, stdin=subprocess.DEVNULL,
         env={**os.environ, "PYTHONPATH": str(ROOT)}, timeout=300,
     )  # fmt: skip
     return done.returncode, done.stdout + done.stderr, out

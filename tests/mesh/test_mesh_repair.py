@@ -244,5 +244,7 @@ def test_a_child_that_fails_is_skipped_and_said_so(
 
 def test_pymeshlab_stays_out_of_this_process() -> None:
     code = "import printprep.mesh.repair, sys; print('pymeshlab' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True
+    )
     assert done.stdout.strip() == "False"

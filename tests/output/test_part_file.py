@@ -76,7 +76,11 @@ def test_the_slicer_takes_it_as_one_manifold_with_its_cavity(tmp_path: Path, pru
     path = tmp_path / "part.3mf"
     hollow_result().write(path)
     done = subprocess.run(
-        [prusa_slicer, "--info", path], capture_output=True, text=True, check=True, timeout=120
+        [prusa_slicer, "--info", path],
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+        timeout=120,
     )
     facts = dict(line.split(" = ") for line in done.stdout.splitlines() if " = " in line)
     assert facts["manifold"] == "yes"

@@ -31,7 +31,7 @@ def address(tmp_path_factory):
         [*command, "--wall", "3", "--serve", "--no-browser"],
         cwd=folder,
         stdout=subprocess.PIPE,
-        text=True,
+        encoding="utf-8",
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     ) as server:
         yield server.stdout.readline().split()[-1]

@@ -220,7 +220,11 @@ def test_any_folder_will_do(tmp_path: Path) -> None:
         "from printprep.profiles import load_profile\nprint(load_profile().wall_mm)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
     )
     assert done.stdout.strip() == "1.2"
 

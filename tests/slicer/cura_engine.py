@@ -223,6 +223,6 @@ def slice_with_cura(engine: Path, model: Path, out: Path, settings: Mapping[str,
     """Slice an STL in the middle of the bed."""
     words = [word for key, value in settings.items() for word in ("-s", f"{key}={value}")]
     command = [str(engine), "slice", "-o", str(out), *words, "-e0", *words, "-l", str(model)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False, timeout=120)
     assert done.returncode == 0, done.stderr[-2000:]
     assert "no value given" not in done.stderr, done.stderr[-2000:]
