@@ -49,7 +49,7 @@ _VOCABULARIES: Mapping[str, _Vocabulary] = {
             "fill_pattern": ("rectilinear", "Sparse infill pattern Rectilinear"),
             "support_material_buildplate_only": ("1", "Support: On build plate only"),
             "perimeters": ("", "Wall loops {}"),
-            "small_perimeter_speed": ("", None),  # half of an outer wall's speed by default
+            "small_perimeter_speed": ("", None),  # its threshold is 0 by default
             "support_material_closing_radius": ("", None),
         },
         ("Elephant foot compensation 0 mm", "Slicing mode Regular"),
