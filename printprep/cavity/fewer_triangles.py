@@ -81,7 +81,8 @@ class Fewer:
     missing_mm: Float
 
 
-_LOST = Fewer(None, np.zeros((0, 3)), np.zeros(0))
+_NOWHERE = np.zeros((0, 3))
+_LOST = Fewer(None, _NOWHERE, np.zeros(0))
 
 
 def with_fewer_triangles(
@@ -103,7 +104,7 @@ def with_fewer_triangles(
     drawn, triangles = _decimated(vertices, faces, share)
     walls = measured(drawn, triangles, outside, wall_mm)
     if walls.worst_mm > LOST_MM:
-        return _LOST
+        return _LOST if share < 1 else _uncorrected(walls)
     points, walls = _corrected(drawn, triangles, outside, wall_mm, walls, raised=True)
     crossed = self_intersections(points, triangles)
     for rings in range(MOST_RETURNS):
@@ -117,16 +118,25 @@ def with_fewer_triangles(
         walls = measured(points, triangles, outside, wall_mm, _around(back, triangles))
         points, walls = _corrected(points, triangles, outside, wall_mm, walls, raised=False)
         crossed = self_intersections(points, triangles)
+        walls = measured(points, triangles, outside, wall_mm)
     if walls.worst_mm > ACCEPTED_MM or len(crossed.face):
-        thin = walls.missing_mm > CORRECTED_MM
-        return Fewer(
-            None,
-            np.concatenate([walls.at_mm[thin], crossed.at_mm]),
-            np.append(walls.missing_mm[thin], np.full(len(crossed.face), NECK_MM)),
-        )
+        return _uncorrected(walls, crossed.at_mm)
     solid, status = try_manifold(points, triangles)
     sound = status == "NoError" and solid.volume() >= least_mm3
     return replace(_LOST, solid=solid) if sound else _LOST
+
+
+def _uncorrected(walls: Walls, crossed_mm: Float = _NOWHERE) -> Fewer:
+    """No solid, and where the surface should lie deeper.
+
+    crossed_mm : (k, 3), where it intersects itself.
+    """
+    thin = walls.missing_mm > CORRECTED_MM
+    return Fewer(
+        None,
+        np.concatenate([walls.at_mm[thin], crossed_mm]),
+        np.append(walls.missing_mm[thin], np.full(len(crossed_mm), NECK_MM)),
+    )
 
 
 def _corrected(

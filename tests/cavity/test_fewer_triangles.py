@@ -83,3 +83,16 @@ def test_a_convex_field_is_lowered_by_its_chords_and_a_flat_one_not() -> None:
     near[:, :, [0, -1]] = False
     # Second differences of a cylinder of radius r sum to pitch² / r
     assert np.allclose((round_ - bent.depth_mm)[near], CHORD * 0.25 / round_[near], rtol=0.05)
+
+
+def test_cells_wider_than_the_wall_still_keep_it() -> None:
+    """A model of a metre has such cells: there the drawn surface is far off, and drawn again."""
+    groove = solids.box(6, 80, 20).rotate((20, 10, 30)).translate((0, 0, 25))
+    block = solids.box(40, 40, 40) - groove
+    depths = measure_depths(
+        solids.solid(block), resolution=24, wall_mm=0.6, min_feature_mm=1.0, cells_per_wall=0.3
+    )
+    assert depths.field is not None and depths.field.grid.pitch_mm > 2 * 0.6
+    cavity = cavity_surface(block, depths.field, 0.6)
+    assert cavity.volume() > 0.8 * block.volume()
+    sound(block, cavity, 0.6)
