@@ -55,19 +55,23 @@ def _work(
     heard : signals that came before this;  tell : where a byte is written before it ends in order.
     """
     try:
-        sys.unraisablehook = _not_lost
-        _on_signals(_stop)
-        if heard:
-            _stop(heard[0], None)
-        from printprep.cli.run import main
+        try:
+            sys.unraisablehook = _not_lost
+            _on_signals(_stop)
+            if heard:
+                _stop(heard[0], None)
+            from printprep.cli.run import main
 
-        main(arguments)
+            main(arguments)
+        finally:
+            _ignore_signals()  # it has ended: what comes now, comes too late
     except SystemExit:
         _tell(tell)
         raise
     except Terminated as error:
         number = error.number
     else:
+        _tell(tell)
         sys.exit(0)
     # The report is short, and what the run held is put away: the interpreter need not be ended.
     _tell(tell)
@@ -97,12 +101,19 @@ def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
 
 def _stop(number: int, frame: FrameType | None) -> None:
     """End the run once: while it ends, further signals do not disturb it."""
-    for each in _SIGNALS:
-        signal.signal(each, signal.SIG_IGN)
+    _ignore_signals()
     if hasattr(signal, "setitimer") and _imports(frame):
         _come_again(number)
     else:
         raise Terminated(number)
+
+
+def _ignore_signals() -> None:
+    """Ignore the signals that end a program, and one that was to come again."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    for each in _SIGNALS:
+        signal.signal(each, signal.SIG_IGN)
 
 
 def _come_again(number: int) -> None:
@@ -161,8 +172,10 @@ def _wait_for(
     _on_signals(pass_on)
     if early:
         pass_on(early[0], None)
-    _, status = os.waitpid(child, 0)
+    # Until it is reaped, its number is no other process's: a signal passed on reaches it or nobody.
+    os.waitid(os.P_PID, child, os.WEXITED | os.WNOWAIT)
     ended = True
+    _, status = os.waitpid(child, 0)
     signal.setitimer(signal.ITIMER_REAL, 0)
     code = os.waitstatus_to_exitcode(status)
     if code < 0 or heard:

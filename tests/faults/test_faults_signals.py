@@ -157,10 +157,11 @@ def test_a_command_that_is_killed_is_told_and_leaves_nothing(folder: Path, slici
     assert names(folder) == []
 
 
-def supervised(body: str) -> list[str]:
-    """A run of the program whose command is this code."""
+def supervised(body: str, first: str = "") -> list[str]:
+    """A run of the program whose command is this code, after some code in both its processes."""
     code = f"""
 import os, printprep.cli.run, printprep.cli.supervise
+{first}
 def main(arguments):
     {body}
 printprep.cli.run.main = main
@@ -207,3 +208,29 @@ def test_what_was_ignored_stays_ignored():
     body = "import time; os.kill(os.getppid(), 1); time.sleep(0.5); raise SystemExit(0)"
     run = subprocess.run(["nohup", *supervised(body)], capture_output=True, check=False)
     assert run.returncode == 0
+
+
+@pytest.mark.parametrize("number", [INTERRUPT, TERMINATE, signal.SIGHUP])
+@pytest.mark.parametrize("call", ["waitid", "waitpid"])
+def test_a_signal_after_the_end_of_the_command_finds_nobody(number: int, call: str):
+    """It comes at the worst moments: when the command has ended, and when it has been reaped."""
+    first = f"""
+waits = os.{call}
+def disturbed(*arguments):
+    found = waits(*arguments)
+    os.kill(os.getpid(), {int(number)})
+    return found
+os.{call} = disturbed
+"""
+    run = subprocess.run(
+        supervised("raise SystemExit(4)", first), capture_output=True, encoding="utf-8", check=False
+    )
+    assert (run.returncode, run.stderr) == (4, "")
+
+
+@pytest.mark.parametrize("number", [INTERRUPT, TERMINATE, signal.SIGHUP])
+@pytest.mark.parametrize("ends", ["raise SystemExit(4)", "pass"])
+def test_a_signal_while_the_interpreter_ends_changes_nothing(number: int, ends: str):
+    body = f"import atexit; atexit.register(lambda: os.kill(os.getpid(), {int(number)})); {ends}"
+    run = subprocess.run(supervised(body), capture_output=True, encoding="utf-8", check=False)
+    assert (run.returncode, run.stderr) == (4 if "4" in ends else 0, "")
