@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from printprep.mesh.measure import bodies, mass_properties
+from printprep.mesh.measure import bodies, volume_and_centre
 from printprep.output.numbers import number, place, rounded
 from printprep.stand.contact import contact_of, section_at_bed
 from printprep.stand.lean import tilt_toward
@@ -142,7 +142,7 @@ class HollowResult:
         """Centre of mass (x, y, z) of the part, or with infill of its print."""
         if self.infill is not None:
             return self.infill.centre_mm
-        return mass_properties(self.part.manifold).centre_mm
+        return volume_and_centre(self.part.manifold)[1]
 
     def figures(self) -> Figures:
         """The figures that a file of the part carries."""

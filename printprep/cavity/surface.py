@@ -13,7 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.fewer_triangles import with_fewer_triangles
+from printprep.cavity.fewer_triangles import (
+    CORRECTED_MM,
+    LOST_MM,
+    measured,
+    with_fewer_triangles,
+)
 from printprep.grid.distance import DepthField
 from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, gap_mm
@@ -61,12 +66,20 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
     outside = tree_of(*arrays(solid))
     field = DepthField(field.grid, field.depth_mm.copy())
     lower_convex(field, wall_mm)
-    shares = list(SHARES)
+    shares: list[float] = []
     for drawing in range(MOST_DRAWINGS):
+        shares = shares or list(SHARES)
         drawn = isosurface(field, wall_mm)
         if drawn.is_empty():
             return drawn
         vertices, faces = arrays(drawn.simplify(FLAT_MM))
+        if field.grid.pitch_mm > wall_mm and drawing < MOST_DRAWINGS - 1:
+            # Such cells are far off where the outside has details: no try would succeed
+            walls = measured(vertices, faces, outside, wall_mm)
+            if walls.worst_mm > LOST_MM:
+                thin = walls.missing_mm > CORRECTED_MM
+                _lower(field, walls.at_mm[thin], walls.missing_mm[thin])
+                continue
         least_mm3 = float(drawn.volume() - LOST_SHARE * (solid.volume() - drawn.volume()))
         while True:
             share = shares[0]
@@ -79,6 +92,8 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
             if share == 1 or (len(fewer.necks_mm) and drawing % 2 == 0):
                 break
             del shares[0]
+        if share == 1:  # the next drawing lies deeper, and may do with fewer
+            shares = []
         _lower(field, fewer.necks_mm, fewer.missing_mm)
     raise ArithmeticError(f"Walls of {wall_mm} mm are not reached in {MOST_DRAWINGS} drawings.")
 

@@ -13,7 +13,7 @@ from printprep.cavity.base import Feet, base_of, feet_of
 from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
 from printprep.grid.domain import reweighed
-from printprep.mesh.measure import bodies, mass_properties
+from printprep.mesh.measure import bodies, volume_and_centre
 from printprep.stand.contact import contact_of, section_at_bed
 from printprep.types import Base, Lean
 
@@ -257,8 +257,8 @@ def _moments(manifold: Manifold) -> Float:
     """(4,) volume in mm³ and first moments in mm⁴."""
     if manifold.is_empty():
         return np.zeros(4)
-    properties = mass_properties(manifold)
-    return properties.volume_mm3 * np.array([1.0, *properties.centre_mm])
+    volume_mm3, centre_mm = volume_and_centre(manifold)
+    return volume_mm3 * np.array([1.0, *centre_mm])
 
 
 def _joined(

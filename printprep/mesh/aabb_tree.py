@@ -30,7 +30,7 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
     key = blake2b(vertices.data, digest_size=16).digest() + blake2b(faces.data).digest()
     found = _KEPT.pop(key, None) or SurfaceTree(vertices, faces)
     _KEPT[key] = found  # the last used are at the end
-    while len(_KEPT) > _MOST_KEPT:
+    while len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES:
         del _KEPT[next(iter(_KEPT))]
     return found
 
@@ -127,5 +127,6 @@ class SurfaceTree:
         return scene
 
 
-_MOST_KEPT = 3
+# Trees are kept as long as they have no more faces together; each takes about half a kilobyte.
+_MOST_FACES = 500_000
 _KEPT: dict[bytes, SurfaceTree] = {}

@@ -79,42 +79,73 @@ def mass_properties(manifold: Manifold) -> MassProperties:
 
     Raises GeometryError where the volume is not positive: there is no centre of mass then.
     """
-    vertices, faces = arrays(manifold)
-    if len(vertices) == 0:
-        raise GeometryError("An empty solid has no volume and no centre of mass.")
-    # The middle of the bounds as reference keeps all digits of a part far from the origin.
-    reference = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    corners = (vertices - reference)[faces]
-    volumes = signed_volumes(corners)
-    volume = float(volumes.sum())
-    if not volume > 0:
-        raise GeometryError(f"A solid of volume {volume:g} mm³ has no centre of mass.")
-    sums = corners.sum(axis=1)
-    centre = (volumes[:, None] * sums).sum(axis=0) / (4 * volume)
+    reference, corners = _about_middle(manifold)
+    volumes, volume, centre = _first_moments(corners)
     # ∫ x xᵀ over the tetrahedron (0, a, b, c) = V/20 · (a aᵀ + b bᵀ + c cᵀ + s sᵀ), s = a + b + c.
+    sums = corners.sum(axis=1)
     second = np.einsum("f,fki,fkj->ij", volumes, corners, corners)
     second += np.einsum("f,fi,fj->ij", volumes, sums, sums)
     second = second / 20 - volume * np.outer(centre, centre)
     inertia = np.trace(second) * np.eye(3) - second
-    xyz = [float(value) for value in centre + reference]
-    rows = [[float(value) for value in row] for row in (inertia + inertia.T) / 2]
+    x, y, z = (centre + reference).tolist()
+    rows = ((inertia + inertia.T) / 2).tolist()
     return MassProperties(
         volume_mm3=volume,
-        centre_mm=(xyz[0], xyz[1], xyz[2]),
+        centre_mm=(x, y, z),
         inertia_mm5=tuple((row[0], row[1], row[2]) for row in rows),
     )
+
+
+def volume_and_centre(manifold: Manifold) -> tuple[float, tuple[float, float, float]]:
+    """Volume in mm³ and centre of mass in mm: those of :func:`mass_properties`, without inertia.
+
+    Raises GeometryError where the volume is not positive: there is no centre of mass then.
+    """
+    reference, corners = _about_middle(manifold)
+    _, volume, centre = _first_moments(corners)
+    x, y, z = (centre + reference).tolist()
+    return volume, (x, y, z)
+
+
+def _about_middle(manifold: Manifold) -> tuple[Float, Float]:
+    """(3,) mm, the middle of the bounds, and (m, 3 corners, 3 xyz) the triangles about it.
+
+    With it as reference a part far from the origin keeps all its digits.
+    """
+    vertices, faces = arrays(manifold)
+    if len(vertices) == 0:
+        raise GeometryError("An empty solid has no volume and no centre of mass.")
+    reference: Float = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    return reference, (vertices - reference)[faces]
+
+
+def _first_moments(corners: Float) -> tuple[Float, float, Float]:
+    """(m,) signed volumes of triangles (m, 3, 3), their sum in mm³, and (3,) mm, the centre."""
+    volumes = signed_volumes(corners)
+    volume = float(volumes.sum())
+    if not volume > 0:
+        raise GeometryError(f"A solid of volume {volume:g} mm³ has no centre of mass.")
+    sums = corners[:, 0] + corners[:, 1] + corners[:, 2]
+    return volumes, volume, (volumes[:, None] * sums).sum(axis=0) / (4 * volume)
 
 
 def signed_volumes(corners: Float) -> Float:
     """(m,) signed volumes of the tetrahedra from the origin to triangles (m, 3 corners, 3 xyz)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    result: Float = np.einsum("fi,fi->f", a, np.cross(b, c)) / 6
+    result: Float = np.einsum("fi,fi->f", a, _cross(b, c)) / 6
     return result
 
 
 def area_normals(corners: Float) -> Float:
     """(m, 3) outward normals of triangles (m, 3 corners, 3 xyz), as long as twice their area."""
-    result: Float = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _cross(a: Float, b: Float) -> Float:
+    """(m, 3) cross products of vectors (m, 3); like ``numpy.cross``, in half the time."""
+    result = np.empty(a.shape)
+    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        result[:, x] = a[:, y] * b[:, z] - a[:, z] * b[:, y]
     return result
 
 
@@ -198,6 +229,8 @@ def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ..
 def bodies(manifold: Manifold) -> tuple[Manifold, ...]:
     """The bodies that do not touch, each with its voids, in the order of ``decompose``."""
     solids, voids = shells(manifold)
+    if len(solids) == 1 and all(_box_holds(solids[0], void) for void in voids):
+        return (manifold,)
     owned: list[list[Manifold]] = [[solid] for solid in solids]
     for void in voids:
         owner = innermost(void, solids)
@@ -233,6 +266,11 @@ def innermost(shell: Manifold, solids: Sequence[Manifold]) -> int | None:
         if smaller and 2 * int(inside.sum()) > len(witnesses):
             best = index
     return best
+
+
+def _box_holds(solid: Manifold, void: Manifold) -> bool:
+    a, b = solid.bounding_box(), void.bounding_box()
+    return all(a[i] <= b[i] and b[i + 3] <= a[i + 3] for i in range(3))
 
 
 def _boxes_meet(a: Sequence[float], b: Sequence[float]) -> bool:

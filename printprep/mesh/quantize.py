@@ -46,7 +46,8 @@ def quantized(manifold: Manifold) -> Manifold:
     """
     vertices, faces = quantized_arrays(manifold)
     if not len(crowded_edges(faces)):
-        return _without_flat_shells(_rebuilt(vertices, faces))
+        same = _is_rounded(manifold, len(vertices), len(faces))
+        return _without_flat_shells(manifold if same else _rebuilt(vertices, faces))
     reason = "it still touches itself"
     apart, folds = manifold, None
     for tolerance_mm in _MERGED_MM:
@@ -88,6 +89,14 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     first = faces.argmin(axis=1)[:, None]
     faces = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
     return vertices[used], faces[np.lexsort(faces.T[::-1])]
+
+
+def _is_rounded(manifold: Manifold, vertices: int, faces: int) -> bool:
+    """Whether rounding, which leaves so many vertices and faces, changes nothing of a manifold."""
+    if (manifold.num_vert(), manifold.num_tri()) != (vertices, faces):
+        return False
+    points, _ = arrays(manifold)
+    return bool((points.astype(np.float32) == points).all())
 
 
 def crowded_edges(faces: Int) -> Int:

@@ -48,14 +48,22 @@ class ShellFigures:
 
 def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
     """Measure the shells of vertices (n, 3) mm and faces (m, 3)."""
-    start, end = directed_edges(faces).T
-    _, label = np.unique(connected(start, end, len(vertices))[faces[:, 0]], return_inverse=True)
-    label = np.ravel(label).astype(np.int64)
-    count = int(label.max(initial=-1)) + 1
+    a, b, c = faces.T
+    component = connected(np.append(a, b), np.append(b, c), len(vertices))
+    used = np.zeros(int(component.max(initial=-1)) + 1, dtype=bool)
+    used[component[a]] = True
+    number = np.cumsum(used) - 1
+    count, label = int(used.sum()), number[component[a]]
+    points, owner = vertices, number[component]
+    if not used.all():  # some vertices have no faces
+        points, owner = vertices[used[component]], owner[used[component]]
+    if count == 1:
+        low, high = points.min(axis=0)[None], points.max(axis=0)[None]
+    else:
+        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        np.minimum.at(low, owner, points)
+        np.maximum.at(high, owner, points)
     corners = vertices[faces]
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, label, corners.min(axis=1))
-    np.maximum.at(high, label, corners.max(axis=1))
     # About a point of its own, each shell keeps all the digits of its volume.
     each = signed_volumes(corners - low[label][:, None])
     volume: Float = np.bincount(label, weights=each, minlength=count).astype(np.float64)

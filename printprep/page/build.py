@@ -13,7 +13,7 @@ import numpy as np
 
 from printprep.errors import InputError
 from printprep.files import reason_of
-from printprep.mesh.measure import from_arrays, mass_properties
+from printprep.mesh.measure import from_arrays, volume_and_centre
 from printprep.page import facts
 from printprep.page.content import Curve, Form, Group, Page, PoseRow, Source
 from printprep.page.encode import encode
@@ -142,7 +142,7 @@ def page_of_part(path: Path, source: Source, verified: Verified | None = None) -
             profile.printer.first_layer_mm,
             infilled=figures.infill is not None,
         ),
-        centre_before_mm=mass_properties(picture.shape.outside).centre_mm,
+        centre_before_mm=volume_and_centre(picture.shape.outside)[1],
         groups=facts.groups(figures, profile),
         verified=verified,
         curve=None,
@@ -226,7 +226,7 @@ def page_of_checked(
         PoseRow(number, tilt(pose.tilt_deg), pose.tilt_deg >= lean.angle_deg)
         for number, pose in enumerate(poses, 1)
     )
-    centre = mass_properties(context.part).centre_mm
+    centre = volume_and_centre(context.part)[1]
     return Page(
         name=name,
         kicker=f"As it is, checked for {profile.material.name}, {profile.name}",

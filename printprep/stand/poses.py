@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import area_normals, arrays, from_arrays, mass_properties
+from printprep.mesh.measure import area_normals, arrays, from_arrays, volume_and_centre
 from printprep.stand.footing import Footing
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def stable_poses(solid: Manifold) -> tuple[Pose, ...]:
     is atan(distance to the nearest edge of the facet / height), as for any support polygon.
     """
     vertices, faces = arrays(solid.hull())
-    centre = np.array(mass_properties(solid).centre_mm)
+    centre = np.array(volume_and_centre(solid)[1])
     normals = area_normals(vertices[faces])
     area = np.linalg.norm(normals, axis=1)
     normals = normals[area > 0] / area[area > 0, None]

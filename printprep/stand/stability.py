@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.mesh.measure import bodies, mass_properties
+from printprep.mesh.measure import bodies, volume_and_centre
 from printprep.stand.contact import Contact, contact_of, section_at_bed
 from printprep.types import Stability
 
@@ -54,4 +54,4 @@ def least_stable(each: Iterable[Stability]) -> Stability:
 
 def _one_body(body: Manifold, first_layer_mm: float) -> Stability:
     contact = contact_of(section_at_bed(body, first_layer_mm))
-    return balanced(contact, mass_properties(body).centre_mm)
+    return balanced(contact, volume_and_centre(body)[1])

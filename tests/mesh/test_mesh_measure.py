@@ -16,6 +16,7 @@ from printprep.mesh.measure import (
     from_arrays,
     mass_properties,
     shells,
+    volume_and_centre,
     winding,
 )
 
@@ -50,6 +51,20 @@ def test_a_void_subtracts_itself() -> None:
     solids, voids = shells(part)
     assert [shell.volume() for shell in solids] == [pytest.approx(1000)]
     assert [shell.volume() for shell in voids] == [pytest.approx(8)]
+
+
+def test_volume_and_centre_are_those_of_the_mass_properties() -> None:
+    part = from_arrays(*joined(sphere(7.0), inside_out(box((1, 1, 1), (3, 3, 3)))))
+    whole = mass_properties(part)
+    assert volume_and_centre(part) == (whole.volume_mm3, whole.centre_mm)
+    with pytest.raises(GeometryError, match="empty solid"):
+        volume_and_centre(part - part)
+
+
+def test_one_body_with_voids_is_the_solid_itself() -> None:
+    part = from_arrays(*joined(box((0, 0, 0), (10, 10, 10)), inside_out(box((1, 1, 1), (3, 3, 3)))))
+    (body,) = bodies(part)
+    assert body is part
 
 
 def test_bodies_keep_their_own_voids() -> None:

@@ -40,6 +40,7 @@ def test_touching_edges_are_drawn_apart(name):
 def test_it_changes_nothing_twice(name):
     once = quantized(TOUCHING[name]())
     twice = quantized(once)
+    assert quantized(twice) is twice
     for first, second in zip(quantized_arrays(once), quantized_arrays(twice), strict=True):
         assert np.array_equal(first, second)
 

@@ -29,6 +29,15 @@ def test_figures_of_a_block_with_a_void() -> None:
     assert figures.high_mm[void] == pytest.approx([2, 2, 12])
 
 
+def test_vertices_without_faces_belong_to_no_shell() -> None:
+    vertices, faces = arrays(with_crumbs(3))
+    plain = shell_figures(vertices, faces)
+    strewn = shell_figures(np.concatenate([[[99.0, 99.0, 99.0]], vertices]), faces + 1)
+    assert len(plain.volume_mm3) == 5
+    for name in ("label", "volume_mm3", "low_mm", "high_mm"):
+        assert np.array_equal(getattr(plain, name), getattr(strewn, name))
+
+
 def test_crumbs_go_and_all_else_stays() -> None:
     left, crumbs = without_crumbs(with_crumbs(40), 0.01)
     assert crumbs == 40
