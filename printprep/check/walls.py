@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, gap_mm
 
 if TYPE_CHECKING:
@@ -62,13 +63,11 @@ def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float
 
     of, to : (n, 3) vertices in mm and (m, 3) faces each.  The midpoint is (3,) mm.
     """
-    import igl
-
     vertices, faces = of
-    points = np.ascontiguousarray(np.concatenate([vertices, vertices[faces].mean(axis=1)]))
-    squared, _, nearest = igl.point_mesh_squared_distance(points, *to)
-    least = int(np.argmin(squared))
-    return float(np.sqrt(max(squared[least], 0.0))), (points[least] + nearest[least]) / 2
+    points = np.concatenate([vertices, vertices[faces].mean(axis=1)])
+    distance, nearest = tree_of(*to).nearest(points)
+    least = int(np.argmin(distance))
+    return float(distance[least]), (points[least] + nearest[least]) / 2
 
 
 def united(solids: Sequence[Manifold]) -> Manifold:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import PrintprepError
+from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
 from printprep.mesh.shell_figures import joined, shell_figures
 
@@ -73,12 +74,14 @@ def _check_volume(part: Part, drains: tuple[Drain, ...]) -> None:
 
 
 def _check_surface(part: Part, drains: tuple[Drain, ...]) -> None:
-    outside, cavity = arrays(part.outside), arrays(joined(part.cavities))
-    written = arrays(part.manifold)
-    points = _some(outside[0])
-    _refuse_far(part, points, distance_to_mesh_mm(points, *written), drains, "does not reach")
-    points = _some(written[0])
-    off = np.minimum(distance_to_mesh_mm(points, *outside), distance_to_mesh_mm(points, *cavity))
+    outside, written = tree_of(*arrays(part.outside)), tree_of(*arrays(part.manifold))
+    points = _some(outside.vertices)
+    _refuse_far(part, points, written.nearest(points)[0], drains, "does not reach")
+    points = _some(written.vertices)
+    off = outside.nearest(points)[0]
+    if part.cavities:
+        cavity = tree_of(*arrays(joined(part.cavities)))
+        off = np.minimum(off, cavity.nearest(points)[0])
     _refuse_far(part, points, off, drains, "leaves")
 
 
