@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import area_normals, signed_volumes, winding
-from printprep.mesh.weld import components, directed_edges, edge_counts
+from printprep.mesh.weld import components, directed_edges, is_closed
 from printprep.wording import counted
 
 if TYPE_CHECKING:
@@ -88,11 +88,10 @@ def _misplaced(pieces: list[_Piece], around: list[list[int]], sign: int) -> list
 
 def _turned_alike(vertices: Float, faces: Int) -> tuple[Int, int]:
     """Faces (m, 3) that agree across every edge with exactly two, and how many were turned."""
+    if is_closed(faces, once=True):
+        return faces.copy(), 0
     edges = directed_edges(faces)
     size = int(faces.max(initial=0)) + 1
-    there, back = np.sort(edges @ np.array([size, 1])), np.sort(edges @ np.array([1, size]))
-    if (there[1:] != there[:-1]).all() and np.array_equal(there, back):
-        return faces.copy(), 0  # every edge once in each direction
     low, high = edges.min(axis=1), edges.max(axis=1)
     _, index, count = np.unique(low * size + high, return_inverse=True, return_counts=True)
     forward = np.bincount(index.ravel(), weights=edges[:, 0] < edges[:, 1])
@@ -124,7 +123,7 @@ def _piece(vertices: Float, faces: Int) -> _Piece:
         high=used.max(axis=0),
         witnesses=used[:: max(1, len(used) // _WITNESSES)],
         volume=volume,
-        sheet=abs(volume) <= _SHEET * area**1.5 and edge_counts(faces).open_edges > 0,
+        sheet=abs(volume) <= _SHEET * area**1.5 and not is_closed(faces, once=False),
     )
 
 

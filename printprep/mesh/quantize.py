@@ -14,7 +14,7 @@ import numpy as np
 from printprep.errors import GeometryError
 from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
-from printprep.mesh.weld import directed_edges, drop_collapsed, unique_rows
+from printprep.mesh.weld import directed_edges, drop_collapsed, is_closed, unique_rows
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -101,15 +101,10 @@ def _is_rounded(manifold: Manifold, vertices: int, faces: int) -> bool:
 
 def crowded_edges(faces: Int) -> Int:
     """(k, 2) directed edges of faces (m, 3) that do not occur once with exactly one opposite."""
-    if not len(faces):
+    if is_closed(faces, once=True):
         return np.zeros((0, 2), dtype=np.int64)
-    edges = directed_edges(faces)
     size = int(faces.max()) + 1
-    there = np.sort(edges @ np.array([size, 1]))
-    back = np.sort(edges @ np.array([1, size]))
-    if (there[1:] != there[:-1]).all() and np.array_equal(there, back):
-        return np.zeros((0, 2), dtype=np.int64)
-    keys, counts = np.unique(there, return_counts=True)
+    keys, counts = np.unique(directed_edges(faces) @ np.array([size, 1]), return_counts=True)
     start, end = np.divmod(keys, size)
     bad = (counts != 1) | ~np.isin(end * size + start, keys)
     return np.stack([start[bad], end[bad]], axis=1)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays, from_arrays, signed_volumes, together
-from printprep.mesh.weld import compact, connected, directed_edges
+from printprep.mesh.weld import compact, connected, directed_edges, is_closed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,6 +72,9 @@ def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
 
 def closed_shells(faces: Int, figures: ShellFigures) -> Bool:
     """(k,) which shells of faces (m, 3) are closed: along each edge as many faces run each way."""
+    closed = np.ones(len(figures.volume_mm3), dtype=bool)
+    if is_closed(faces, once=False):
+        return closed
     edges = directed_edges(faces)
     size = int(faces.max(initial=0)) + 1
     low, high = edges.min(axis=1), edges.max(axis=1)
@@ -79,7 +82,6 @@ def closed_shells(faces: Int, figures: ShellFigures) -> Bool:
     index = np.ravel(index)
     balance = np.bincount(index, weights=np.where(edges[:, 0] < edges[:, 1], 1.0, -1.0))
     open_edge = balance[index] != 0
-    closed = np.ones(len(figures.volume_mm3), dtype=bool)
     closed[np.repeat(figures.label, 3)[open_edge]] = False
     return closed
 

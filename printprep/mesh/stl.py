@@ -25,7 +25,7 @@ import numpy as np
 from printprep.errors import InputError
 from printprep.mesh.limits import refuse_too_many
 from printprep.mesh.text import numbered_lines, three_numbers, without_mark
-from printprep.mesh.weld import edge_counts, weld
+from printprep.mesh.weld import is_closed, weld
 from printprep.types import ReadNote
 from printprep.wording import counted, shortened
 
@@ -149,7 +149,7 @@ def _closes(corners: Float) -> bool:
     if not len(corners) or not np.isfinite(corners).all():
         return False
     _, faces = weld(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-    return len(faces) > 0 and edge_counts(faces).open_edges == 0
+    return len(faces) > 0 and is_closed(faces, once=False)
 
 
 def _cut_short(corners: Float, what: str, partial: bool, promise: str) -> Facets:

@@ -61,13 +61,13 @@ def welded(vertices: Float, faces: Int) -> Welded:
     without area but with three distinct corners is kept for the same reason.
     """
     exact = _weld_equal(vertices, faces)
+    if is_closed(exact.faces, once=False):
+        return exact
+    size = float(np.quantile(np.abs(exact.vertices).max(axis=1), _USUAL))
+    near = _weld_near(exact, _NOISE * size)
     still_open = edge_counts(exact.faces).open_edges
-    if still_open:
-        size = float(np.quantile(np.abs(exact.vertices).max(axis=1), _USUAL))
-        near = _weld_near(exact, _NOISE * size)
-        if len(near.kept) and edge_counts(near.faces).open_edges < still_open:
-            return near
-    return exact
+    fewer = len(near.kept) and edge_counts(near.faces).open_edges < still_open
+    return near if fewer else exact
 
 
 def _weld_equal(vertices: Float, faces: Int) -> Welded:
@@ -163,6 +163,19 @@ def compact(vertices: Float, faces: Int) -> tuple[Float, Int]:
 def directed_edges(faces: Int) -> Int:
     """(3m, 2) vertex pairs (from, to) of faces (m, 3), face by face, three of each in order."""
     return np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+
+
+def is_closed(faces: Int, *, once: bool) -> bool:
+    """Whether each edge of faces (m, 3) runs as often one way as the other; once: once each way.
+
+    An edge with an even number of faces may be balanced without being a manifold one.
+    """
+    edges = directed_edges(faces)
+    size = int(faces.max(initial=0)) + 1
+    there, back = np.sort(edges @ np.array([size, 1])), np.sort(edges @ np.array([1, size]))
+    if once and (there[1:] == there[:-1]).any():
+        return False
+    return np.array_equal(there, back)
 
 
 def opposite_edges(faces: Int) -> tuple[Int, Int]:
