@@ -89,6 +89,16 @@ def _beside_drains(judged: Judged, points: Float) -> NDArray[np.bool_]:
     return near
 
 
+def _closed_off(standing: Manifold, points: Float) -> NDArray[np.bool_]:
+    """Which points lie on voids that a base closes off from the air: those are filled."""
+    off = np.zeros(len(points), dtype=bool)
+    for shell in standing.decompose():
+        if shell.volume() < 0:
+            squared, _, _ = igl.point_mesh_squared_distance(points, *arrays(shell))
+            off |= squared < OFF_MM**2
+    return off
+
+
 def _outside(judged: Judged) -> list[str]:
     """1: the model's outside is the part's, but for a base and drain holes."""
     part = judged.result.part
@@ -105,6 +115,7 @@ def _outside(judged: Judged) -> list[str]:
     if part.base is not None:
         low, high = np.reshape(base.bounding_box(), (2, 3))
         free &= ((points < low - 0.01) | (points > high + 0.01)).any(axis=1)
+        free &= ~_closed_off(judged.outside + base, points)
     squared, _, _ = igl.point_mesh_squared_distance(
         points[free], judged.written.vertices, judged.written.faces
     )
