@@ -28,7 +28,8 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
     vertices = np.ascontiguousarray(vertices, dtype=np.float64)
     faces = np.ascontiguousarray(faces, dtype=np.int64)
     key = blake2b(vertices.data, digest_size=16).digest() + blake2b(faces.data).digest()
-    found = _KEPT.pop(key, None) or SurfaceTree(vertices, faces)
+    # A copy: the caller may move his corners afterwards, and the tree is still that of this mesh.
+    found = _KEPT.pop(key, None) or SurfaceTree(vertices.copy(), faces.copy())
     _KEPT[key] = found  # the last used are at the end
     while len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES:
         del _KEPT[next(iter(_KEPT))]

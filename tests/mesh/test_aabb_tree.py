@@ -72,6 +72,10 @@ def test_the_tree_of_the_same_mesh_is_the_same(monkeypatch: pytest.MonkeyPatch) 
     moved = vertices.copy()
     moved[0, 0] += 1e-9
     assert tree_of(moved, faces) is not first
+    tree_of(moved, faces)
+    before = moved.copy()
+    moved *= 2  # what the caller does with his array changes no tree
+    assert np.array_equal(tree_of(before, faces).vertices, before)
     assert tree_of(vertices, faces) is first
     monkeypatch.setattr(aabb_tree, "_MOST_FACES", 3 * len(faces))  # the last three are kept
     for radius in (1, 2, 3):
