@@ -125,6 +125,8 @@ def _outside(judged: Judged) -> list[str]:
     # Just under the model's surface there is material.
     under = points[free] - 0.3 * judged.result.profile.wall_mm * model.face_normals[faces][free]
     in_model = _winding(under, *arrays(judged.outside)) > 0.99
+    squared, _, _ = igl.point_mesh_squared_distance(under, *arrays(judged.outside))
+    in_model &= squared > OFF_MM**2  # beside a sharp edge they may lie on another face
     in_part = _winding(under, judged.written.vertices, judged.written.faces) > 0.5
     missing = float((in_model & ~in_part).mean()) if len(under) else 0.0
     if missing > 0:

@@ -121,9 +121,10 @@ def _holds_ball(piece: Manifold, radius_mm: float) -> bool:
 
 
 def _lattice(box: Float, step_mm: float) -> Float:
-    """(n, 3) mm, points in a box, a step apart, half a step from its lower corner.
+    """(n, 3) mm, points in a box, a step apart, half a step from its lower corner; never none.
 
-    box : (6,) mm, lower and upper corner.
+    box : (6,) mm, lower and upper corner.  Where it is narrower than a step they lie in its middle.
     """
-    axes = [np.arange(box[axis] + step_mm / 2, box[axis + 3], step_mm) for axis in range(3)]
+    first = box[:3] + np.minimum(step_mm, box[3:] - box[:3]) / 2
+    axes = [np.arange(first[axis], box[axis + 3], step_mm) for axis in range(3)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -12,7 +12,7 @@ from printprep.mesh.short_edges import contract_short_edges
 from printprep.overhang.rule import Unsupported, unsupported_ceilings
 from printprep.supports.capitals import Capitals, cover
 from printprep.supports.carry_flagged import PHASES, carry_flagged
-from printprep.supports.ceiling import SPACING_MM, ceiling_samples
+from printprep.supports.ceiling import ceiling_samples, spacing_of
 from printprep.supports.column_feet import set_feet
 from printprep.supports.column_forest import Forest
 from printprep.supports.columns import raise_columns
@@ -70,8 +70,10 @@ def vaulted(hollowable_volume: Manifold, profile: Profile, built: VaultRule) -> 
     """
     rule = built_for(profile, built)
     members = MemberSizes.of(profile, rule)
-    samples = ceiling_samples(hollowable_volume, slope_deg(rule, profile.overhang_deg))
-    capitals, forest = _raised(samples, hollowable_volume, members)
+    theta_deg = slope_deg(rule, profile.overhang_deg)
+    spacing_mm = spacing_of(hollowable_volume, theta_deg)
+    samples = ceiling_samples(hollowable_volume, theta_deg, spacing_mm)
+    capitals, forest = _raised(samples, spacing_mm, hollowable_volume, members)
     wide, narrow = funnels(capitals, members), columns(forest, members)
     cavity = _without(hollowable_volume, wide + narrow).simplify(SIMPLIFY_MM)
     cavity = without_small_pieces(cavity, members.thickness_mm)
@@ -95,14 +97,14 @@ def vaulted(hollowable_volume: Manifold, profile: Profile, built: VaultRule) -> 
 
 
 def _raised(
-    samples: Float, hollowable_volume: Manifold, members: MemberSizes
+    samples: Float, spacing_mm: float, hollowable_volume: Manifold, members: MemberSizes
 ) -> tuple[Capitals, Forest]:
     """Capitals for all samples (n, 3) mm, and the columns under them."""
     forest = Forest()
     if len(samples) == 0:
         return Capitals.none(), forest
     lookup = InsideLookup.of(hollowable_volume, LOOKUP_MM)
-    capitals = cover(samples, members, SPACING_MM**2, lookup)
+    capitals = cover(samples, members, spacing_mm**2, lookup)
     footings = DistanceToFooting.of(lookup, members, float(capitals.node_mm[:, 2].max()))
     raise_columns(capitals.node_mm, lookup, footings, members, forest)
     set_feet(forest, lookup, members)

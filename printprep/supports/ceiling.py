@@ -13,10 +13,12 @@ from printprep.mesh.winding_columns import crossings_of
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.arrays import Float
+    from printprep.arrays import Float, Int
 
 # Each sample stands for a square of this side, seen from below.
 SPACING_MM = 0.3
+# A ceiling of more than 450 cm² has its samples farther apart, so that there are no more.
+MOST_SAMPLES = 500_000
 # The lattice avoids round numbers, where meshes have their edges.
 _JITTER = (0.4142135624, 0.7320508076)
 
@@ -28,13 +30,7 @@ def ceiling_samples(
 
     A face of a cavity with outward normal n overhangs by asin n_z.
     """
-    vertices, faces = arrays(hollowable_volume)
-    if len(faces) == 0:
-        return np.zeros((0, 3))
-    corners = vertices[faces]
-    normals = area_normals(corners)
-    steep = math.sin(math.radians(theta_deg)) * np.linalg.norm(normals, axis=1)
-    flat = faces[normals[:, 2] > steep]
+    vertices, flat, _ = _flat_faces(hollowable_volume, theta_deg)
     if len(flat) == 0:
         return np.zeros((0, 3))
     low = vertices[flat].min(axis=(0, 1))[:2] + spacing_mm * (np.array(_JITTER) - 1)
@@ -43,3 +39,18 @@ def ceiling_samples(
     columns = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     hits = crossings_of(vertices, flat, columns)
     return np.column_stack([columns[hits.column], hits.z_mm])
+
+
+def spacing_of(hollowable_volume: Manifold, theta_deg: float) -> float:
+    """Spacing in mm at which faces that overhang more than θ have at most ``MOST_SAMPLES``."""
+    _, _, seen_mm2 = _flat_faces(hollowable_volume, theta_deg)
+    return max(SPACING_MM, math.sqrt(seen_mm2 / MOST_SAMPLES))
+
+
+def _flat_faces(hollowable_volume: Manifold, theta_deg: float) -> tuple[Float, Int, float]:
+    """Vertices (n, 3) mm, the faces (m, 3) that overhang more than θ, and their area from below."""
+    vertices, faces = arrays(hollowable_volume)
+    normals = area_normals(vertices[faces])
+    steep = math.sin(math.radians(theta_deg)) * np.linalg.norm(normals, axis=1)
+    flat = normals[:, 2] > steep
+    return vertices, faces[flat], float(normals[flat, 2].sum()) / 2

@@ -112,6 +112,12 @@ def test_a_piece_is_kept_when_it_holds_the_smallest_ball(size: float, kept: int)
     assert len(cavities_of(solids.box(20, size, 20), 1.2)) == kept
 
 
+def test_a_wide_and_low_piece_is_a_cavity() -> None:
+    """Its height is less than half a step of the coarse lattice."""
+    assert len(cavities_of(solids.box(120, 90, 4), 1.2)) == 1
+    assert len(cavities_of(solids.box(120, 90, 1.19), 1.2)) == 0
+
+
 def test_pieces_come_largest_first() -> None:
     pieces = solids.box(5, 5, 5) + solids.box(9, 9, 9).translate((20, 0, 0))
     volumes = [piece.volume() for piece in cavities_of(pieces, 1.0)]

@@ -14,7 +14,7 @@ from solids import box
 from printprep.errors import UsageError
 from printprep.profiles import load_profile
 from printprep.supports.capitals import Capitals, cover
-from printprep.supports.ceiling import SPACING_MM, ceiling_samples
+from printprep.supports.ceiling import MOST_SAMPLES, SPACING_MM, ceiling_samples, spacing_of
 from printprep.supports.column_feet import set_feet
 from printprep.supports.column_forest import Forest
 from printprep.supports.columns import raise_columns
@@ -56,6 +56,14 @@ def test_a_flat_ceiling_is_sampled_everywhere():
     assert len(samples) * SPACING_MM**2 == pytest.approx(400, rel=0.03)
     assert np.ptp(samples[:, 2]) < 1e-9
     assert samples[0, 2] == pytest.approx(17.0)
+
+
+def test_a_vast_ceiling_has_no_more_samples_than_allowed():
+    assert spacing_of(hollowable_volume(), 40.0) == SPACING_MM
+    hall = Manifold.cube((1500, 1000, 10))
+    spacing_mm = spacing_of(hall, 40.0)
+    assert spacing_mm == pytest.approx(math.sqrt(3.0))
+    assert len(ceiling_samples(hall, 40.0, spacing_mm)) == pytest.approx(MOST_SAMPLES, rel=0.01)
 
 
 @pytest.mark.parametrize(("deg", "sampled"), [(39, False), (41, True)])
