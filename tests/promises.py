@@ -99,6 +99,15 @@ def _closed_off(standing: Manifold, points: Float) -> NDArray[np.bool_]:
     return off
 
 
+def _in_own_voids(judged: Judged, points: Float) -> NDArray[np.bool_]:
+    """Which points lie in voids that the model brought and that stay: their walls are its own."""
+    inside = np.zeros(len(points), dtype=bool)
+    for void in judged.result.part.kept:
+        squared, _, _ = igl.point_mesh_squared_distance(points, *arrays(void))
+        inside |= (squared < OFF_MM**2) | (_winding(points, *arrays(void)) > 0.5)
+    return inside
+
+
 def _outside(judged: Judged) -> list[str]:
     """1: the model's outside is the part's, but for a base and drain holes."""
     part = judged.result.part
@@ -126,6 +135,7 @@ def _outside(judged: Judged) -> list[str]:
     under = points[free] - 0.3 * judged.result.profile.wall_mm * model.face_normals[faces][free]
     in_model = _winding(under, *arrays(judged.outside)) > 0.99
     squared, _, _ = igl.point_mesh_squared_distance(under, *arrays(judged.outside))
+    in_model &= ~_in_own_voids(judged, under)
     in_model &= squared > OFF_MM**2  # beside a sharp edge they may lie on another face
     in_part = _winding(under, judged.written.vertices, judged.written.faces) > 0.5
     missing = float((in_model & ~in_part).mean()) if len(under) else 0.0
@@ -165,7 +175,7 @@ def _wall(judged: Judged) -> list[str]:
     part, profile = judged.result.part, judged.result.profile
     surface = arrays(part.outside)
     points = judged.written.vertices
-    points = points[~_beside_drains(judged, points)]
+    points = points[~_beside_drains(judged, points) & ~_in_own_voids(judged, points)]
     squared, _, _ = igl.point_mesh_squared_distance(points, *surface)
     distance = np.sqrt(squared)
     inner = distance[distance > OFF_MM]

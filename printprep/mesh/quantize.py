@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
+# Within 16 mm of the origin single precision holds finer steps than this one.  Vertices that lie
+# nearer to each other are one vertex to readers that weld within a tolerance (trimesh: 1e-8).
+_GRID_MM = 2.0**-20
 # A shell with this mean thickness and this volume is the rest of a rounded sliver, not a feature.
 _FLAT_SHELL_MM = 0.01
 _FLAT_SHELL_MM3 = 0.5
@@ -36,9 +39,10 @@ _NUDGE = "A slightly different size (--size) usually avoids it."
 def quantized(manifold: Manifold) -> Manifold:
     """The manifold whose welded vertices are exactly what a float32 file holds.
 
-    Vertices move by at most half a float32 step (8e-6 mm at 200 mm); where two surfaces touch along
-    an edge they move apart, by less than 0.001 mm.  Flat shells (mean thickness below 0.01 mm and
-    volume below 0.5 mm³) are removed.  Applied to its own result it changes nothing.
+    Vertices move to multiples of 2⁻²⁰ mm, by at most half a float32 step (8e-6 mm at 200 mm); where
+    two surfaces touch along an edge they move apart, by less than 0.001 mm.  Flat shells (mean
+    thickness below 0.01 mm and volume below 0.5 mm³) are removed.  Applied to its own result it
+    changes nothing.
 
     Each attempt is measured against the manifold that was given, and undone where it moved more.
 
@@ -80,8 +84,7 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     gives the same arrays.
     """
     points, corners = arrays(manifold)
-    rounded = points.astype(np.float32).astype(np.float64) + 0.0  # −0 becomes 0
-    vertices, index = unique_rows(rounded)
+    vertices, index = unique_rows(_rounded(points))
     faces = drop_collapsed(index[corners])
     used = np.zeros(len(vertices), dtype=bool)
     used[faces] = True
@@ -96,7 +99,14 @@ def _is_rounded(manifold: Manifold, vertices: int, faces: int) -> bool:
     if (manifold.num_vert(), manifold.num_tri()) != (vertices, faces):
         return False
     points, _ = arrays(manifold)
-    return bool((points.astype(np.float32) == points).all())
+    return bool((_rounded(points) == points).all())
+
+
+def _rounded(points: Float) -> Float:
+    """(n, 3) mm, points on the grid, in single precision."""
+    on_grid = np.rint(points / _GRID_MM) * _GRID_MM
+    result: Float = on_grid.astype(np.float32).astype(np.float64) + 0.0  # −0 becomes 0
+    return result
 
 
 def crowded_edges(faces: Int) -> Int:
@@ -141,7 +151,7 @@ def _moved_apart(manifold: Manifold) -> Manifold:
     the kernel has it, where each of two touching edges has its own vertices; welding joins them.
     """
     exact, faces = arrays(manifold)
-    points = exact.astype(np.float32).astype(np.float64)
+    points = _rounded(exact)
     _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
     shared = counts[np.ravel(index)] > 1
     corners = points[faces]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 from closed_form_parts import box, hollow_box
 from hypothesis import given
 from hypothesis import strategies as st
 from manifold3d import Manifold
 
 from printprep.errors import GeometryError
+from printprep.mesh.measure import from_arrays
 from printprep.mesh.quantize import crowded_edges, quantized, quantized_arrays
 
 TOUCHING = {
@@ -73,6 +75,22 @@ def test_arrays_do_not_depend_on_the_order_of_the_mesh():
         quantized_arrays(hollow_box(20, 2)), quantized_arrays(shuffled), strict=True
     ):
         assert np.array_equal(one, other)
+
+
+def test_vertices_that_a_reader_would_join_are_joined():
+    """Near the origin single precision holds two vertices 2e-9 mm apart; trimesh joins them."""
+    x, y = [0, 2e-9, 9, 0], [0, 0, 0, 9]
+    corners = np.array([*zip(x, y, [0] * 4, strict=True), *zip(x, y, [9] * 4, strict=True)])
+    sides = [
+        f for i, j in ((0, 1), (1, 2), (2, 3), (3, 0)) for f in ((i, j, j + 4), (i, j + 4, i + 4))
+    ]
+    ends = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7)]
+    prism = from_arrays(corners, np.array(sides + ends))
+    assert prism.num_vert() == 8
+    vertices, faces = quantized_arrays(quantized(prism))
+    assert np.array_equal(vertices * 2**20, np.rint(vertices * 2**20))
+    read = trimesh.Trimesh(vertices, faces)  # merges
+    assert read.is_watertight and len(read.vertices) == len(vertices)
 
 
 def test_flat_shells_are_dropped_and_thick_ones_kept():
