@@ -66,7 +66,7 @@ def vaulted(hollowable_volume: Manifold, profile: Profile, built: VaultRule) -> 
     profile : an fdm profile: layers, lines, least feature.
     built : the overhang rule that the vaults keep.
 
-    Raises UsageError for a profile without a nozzle.
+    Raises UsageError for a profile without a nozzle, GeometryError for vast ceilings.
     """
     rule = built_for(profile, built)
     members = MemberSizes.of(profile, rule)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.errors import GeometryError
 from printprep.mesh.measure import area_normals, arrays
 from printprep.mesh.winding_columns import crossings_of
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 SPACING_MM = 0.3
 # A ceiling of more than 450 cm² has its samples farther apart, so that there are no more.
 MOST_SAMPLES = 500_000
+# Five floors of the largest bed in our profiles.  The work grows with the square of the ceilings.
+MOST_CEILING_CM2 = 2500.0
 # The lattice avoids round numbers, where meshes have their edges.
 _JITTER = (0.4142135624, 0.7320508076)
 
@@ -42,8 +45,17 @@ def ceiling_samples(
 
 
 def spacing_of(hollowable_volume: Manifold, theta_deg: float) -> float:
-    """Spacing in mm at which faces that overhang more than θ have at most ``MOST_SAMPLES``."""
+    """Spacing in mm at which faces that overhang more than θ have at most ``MOST_SAMPLES``.
+
+    Raises GeometryError where they are larger than ``MOST_CEILING_CM2``.
+    """
     _, _, seen_mm2 = _flat_faces(hollowable_volume, theta_deg)
+    if seen_mm2 / 100 > MOST_CEILING_CM2:
+        raise GeometryError(
+            f"The ceilings inside measure {seen_mm2 / 100:.0f} cm²; vaults are built for "
+            f"{MOST_CEILING_CM2:.0f} cm² at most.",
+            "Make the model smaller (--size), or leave out the vaults (--vaults none).",
+        )
     return max(SPACING_MM, math.sqrt(seen_mm2 / MOST_SAMPLES))
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from solids import box
 
-from printprep.errors import UsageError
+from printprep.errors import GeometryError, UsageError
 from printprep.profiles import load_profile
 from printprep.supports.capitals import Capitals, cover
 from printprep.supports.ceiling import MOST_SAMPLES, SPACING_MM, ceiling_samples, spacing_of
@@ -60,10 +60,16 @@ def test_a_flat_ceiling_is_sampled_everywhere():
 
 def test_a_vast_ceiling_has_no_more_samples_than_allowed():
     assert spacing_of(hollowable_volume(), 40.0) == SPACING_MM
-    hall = Manifold.cube((1500, 1000, 10))
+    hall = Manifold.cube((500, 400, 10))
     spacing_mm = spacing_of(hall, 40.0)
-    assert spacing_mm == pytest.approx(math.sqrt(3.0))
+    assert spacing_mm == pytest.approx(math.sqrt(0.4))
     assert len(ceiling_samples(hall, 40.0, spacing_mm)) == pytest.approx(MOST_SAMPLES, rel=0.01)
+
+
+def test_a_ceiling_beyond_any_printer_is_told_at_once():
+    with pytest.raises(GeometryError, match=r"measure 15000 cm²; .* 2500 cm²") as told:
+        spacing_of(Manifold.cube((1500, 1000, 10)), 40.0)
+    assert "--vaults none" in told.value.hint
 
 
 @pytest.mark.parametrize(("deg", "sampled"), [(39, False), (41, True)])
