@@ -66,9 +66,8 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
     outside = tree_of(*arrays(solid))
     field = DepthField(field.grid, field.depth_mm.copy())
     lower_convex(field, wall_mm)
-    shares: list[float] = []
+    shares = list(SHARES)
     for drawing in range(MOST_DRAWINGS):
-        shares = shares or list(SHARES)
         drawn = isosurface(field, wall_mm)
         if drawn.is_empty():
             return drawn
@@ -92,8 +91,6 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
             if share == 1 or (len(fewer.necks_mm) and drawing % 2 == 0):
                 break
             del shares[0]
-        if share == 1:  # the next drawing lies deeper, and may do with fewer
-            shares = []
         _lower(field, fewer.necks_mm, fewer.missing_mm)
     raise ArithmeticError(f"Walls of {wall_mm} mm are not reached in {MOST_DRAWINGS} drawings.")
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
+from printprep.mesh.rounding import rounded
 from printprep.mesh.self_intersections import folded
+from printprep.mesh.weld import unique_rows
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -50,20 +52,17 @@ def _samples(vertices: Float, faces: Int) -> Float:
     corners = vertices[faces]
     middles = (corners + np.roll(corners, -1, axis=1)) / 2
     centres = corners.mean(axis=1, keepdims=True)
-    return np.unique(np.concatenate([corners, middles, centres], axis=1).reshape(-1, 3), axis=0)
+    return unique_rows(np.concatenate([corners, middles, centres], axis=1).reshape(-1, 3))[0]
 
 
 def _changed(one: tuple[Float, Int], other: tuple[Float, Int]) -> tuple[Bool, Bool]:
-    """Which faces of each mesh the other lacks: (m,) and (k,), by float32 positions of corners.
+    """Which faces of each mesh the other lacks: (m,) and (k,), by rounded positions of corners.
 
     one, other : vertices (n, 3) mm, and faces (m, 3) and (k, 3).
     """
-    points = np.concatenate([one[0], other[0]]).astype(np.float32)
-    _, index = np.unique(points, axis=0, return_inverse=True)
-    index = np.ravel(index)
+    _, index = unique_rows(rounded(np.concatenate([one[0], other[0]])))
     first = np.sort(index[: len(one[0])][one[1]], axis=1)
     second = np.sort(index[len(one[0]) :][other[1]], axis=1)
-    _, number = np.unique(np.concatenate([first, second]), axis=0, return_inverse=True)
-    number = np.ravel(number)
+    _, number = unique_rows(np.concatenate([first, second]))
     here, there = number[: len(first)], number[len(first) :]
     return ~np.isin(here, there), ~np.isin(there, here)

@@ -14,6 +14,7 @@ import numpy as np
 from printprep.errors import GeometryError
 from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
+from printprep.mesh.rounding import rounded
 from printprep.mesh.weld import directed_edges, drop_collapsed, is_closed, unique_rows
 
 if TYPE_CHECKING:
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-# Within 16 mm of the origin single precision holds finer steps than this one.  Vertices that lie
-# nearer to each other are one vertex to readers that weld within a tolerance (trimesh: 1e-8).
-_GRID_MM = 2.0**-20
 # A shell with this mean thickness and this volume is the rest of a rounded sliver, not a feature.
 _FLAT_SHELL_MM = 0.01
 _FLAT_SHELL_MM3 = 0.5
@@ -84,7 +82,7 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     gives the same arrays.
     """
     points, corners = arrays(manifold)
-    vertices, index = unique_rows(_rounded(points))
+    vertices, index = unique_rows(rounded(points))
     faces = drop_collapsed(index[corners])
     used = np.zeros(len(vertices), dtype=bool)
     used[faces] = True
@@ -99,14 +97,7 @@ def _is_rounded(manifold: Manifold, vertices: int, faces: int) -> bool:
     if (manifold.num_vert(), manifold.num_tri()) != (vertices, faces):
         return False
     points, _ = arrays(manifold)
-    return bool((_rounded(points) == points).all())
-
-
-def _rounded(points: Float) -> Float:
-    """(n, 3) mm, points on the grid, in single precision."""
-    on_grid = np.rint(points / _GRID_MM) * _GRID_MM
-    result: Float = on_grid.astype(np.float32).astype(np.float64) + 0.0  # −0 becomes 0
-    return result
+    return bool((rounded(points) == points).all())
 
 
 def crowded_edges(faces: Int) -> Int:
@@ -151,7 +142,7 @@ def _moved_apart(manifold: Manifold) -> Manifold:
     the kernel has it, where each of two touching edges has its own vertices; welding joins them.
     """
     exact, faces = arrays(manifold)
-    points = _rounded(exact)
+    points = rounded(exact)
     _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
     shared = counts[np.ravel(index)] > 1
     corners = points[faces]

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from typing import TypeVar
+
     from printprep.arrays import Bool, Float, Int
+
+    Rows = TypeVar("Rows", Float, Int)
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,7 @@ def _weld_equal(vertices: Float, faces: Int) -> Welded:
     return _kept(positions, group[faces])
 
 
-def unique_rows(rows: Float) -> tuple[Float, Int]:
+def unique_rows(rows: Rows) -> tuple[Rows, Int]:
     """The different rows of (n, 3) in lexicographic order, and (n,) which of them each row is.
 
     Like ``numpy.unique`` along the first axis, in a third of the time.
