@@ -69,14 +69,6 @@ class CheckContext:
         x0, y0, z0, x1, y1, z1 = self.part.bounding_box()
         return x1 - x0, y1 - y0, z1 - z0
 
-    def sampled_mm2(self, least_mm2: float) -> float:
-        """The least sampled area that a rule reports, from the least that it reports of a file.
-
-        Samples lie a little elsewhere in the file that is written, so that fewer of them, or more,
-        may find a thin place: of a part that was made, half the area is reported already.
-        """
-        return least_mm2 / 2 if self.hollowed else least_mm2
-
     @cached_property
     def wall(self) -> Wall | None:
         """The thinnest wall between cavities and outside, None without a cavity."""

@@ -34,11 +34,10 @@ def gap(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     limit = profile.min_gap_mm
     if limit is None:
         return
-    least_mm2 = context.sampled_mm2(LEAST_MM2)
     patches = [
         patch
         for patch in context.narrow_below(limit - TOLERANCE_MM).patches(_LINK_MM)
-        if patch.total_mm2 >= least_mm2
+        if patch.total_mm2 >= LEAST_MM2
         and np.percentile(patch.thick_mm, 10) >= _EVEN * np.median(patch.thick_mm)
     ]
     if not patches:

@@ -36,8 +36,7 @@ def min_feature(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     thin = context.thin_below(FACETED * max(profile.min_feature_mm, profile.wall_mm))
     slender = (thin.thick_mm < limit) & (thin.wide_mm < profile.min_feature_mm)
     rods = thin.only(slender & (thin.thick_mm >= SLIVER_MM))
-    least_mm2 = context.sampled_mm2(LEAST_MM2)
-    pins = [pin for pin in _gathered(rods) if pin.total_mm2 >= least_mm2]
+    pins = [pin for pin in _gathered(rods) if pin.total_mm2 >= LEAST_MM2]
     if not pins:
         return
     least, place = min(pin.thinnest for pin in pins)

@@ -59,11 +59,10 @@ def _fins(context: CheckContext, profile: Profile) -> Iterator[Finding]:
     # What lies flat on the bed prints well, however thin it is.
     lying = thin.middle[:, 2] < thin.thick_mm / 2 + profile.printer.first_layer_mm
     fins = thin.only((thin.wide_mm >= profile.min_feature_mm) & ~lying)
-    least_mm2 = context.sampled_mm2(LEAST_MM2)
-    if fins.total_mm2 < least_mm2:
+    if fins.total_mm2 < LEAST_MM2:
         return
     very_thin = fins.only(fins.thick_mm < VERY_THIN * FACETED * profile.wall_mm)
-    reported = very_thin if very_thin.total_mm2 >= least_mm2 else fins
+    reported = very_thin if very_thin.total_mm2 >= LEAST_MM2 else fins
     least, place = reported.thinnest
     bound = VERY_THIN * profile.wall_mm if reported is very_thin else profile.wall_mm
     yield finding(

@@ -348,7 +348,7 @@ class _Build:
         key = (part, object_id)
         if key not in self._meshes:
             found = self._object(part, object_id)
-            points = np.array(found.coordinates, dtype=np.float64).reshape(-1, 3)
+            points = _single(np.array(found.coordinates, dtype=np.float64).reshape(-1, 3))
             faces = np.array(found.indices, dtype=np.int64).reshape(-1, 3)
             where = f"{self._archive.name}: object {shortened(object_id)}"
             if not np.isfinite(points).all():
@@ -427,3 +427,14 @@ def _root_part(archive: Archive) -> str:
             f"{archive.name} holds no 3D model.", "Check that it is a 3MF file and export it again."
         )
     return models[0]
+
+
+def _single(points: Float) -> Float:
+    """(n, 3) points in single precision, where it holds them: as lib3mf and slicers read them.
+
+    The text of a coordinate stands for the number nearest to it, and is seldom that number itself.
+    """
+    with np.errstate(over="ignore"):
+        single = points.astype(np.float32).astype(np.float64)
+    result: Float = np.where(np.isfinite(single) & ((single != 0) | (points == 0)), single, points)
+    return result

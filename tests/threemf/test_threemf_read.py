@@ -143,10 +143,11 @@ def test_assemblies_of_boxes_keep_their_volume_under_any_transform(
     matrix = np.array(numbers).reshape(4, 3)
     expected_faces = 12 * len(placed)
     assert len(found.faces) == expected_faces
-    corners = [
-        (box(low, tuple(np.add(low, size))) + np.array([5, 6, 7])) @ matrix[:3] + matrix[3]
+    single = [
+        np.asarray(box(low, tuple(np.add(low, size))), np.float32).astype(np.float64)
         for low, size in placed
     ]
+    corners = [(box_ + np.array([5, 6, 7])) @ matrix[:3] + matrix[3] for box_ in single]
     assert found.vertices == pytest.approx(np.vstack(corners) * unit[1], rel=1e-9, abs=1e-6)
     scale = abs(np.linalg.det(matrix[:3])) * unit[1] ** 3
     for number, (_, size) in enumerate(placed):
