@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SPACING_MM = 0.3
 # A ceiling of more than 450 cm² has its samples farther apart, so that there are no more.
 MOST_SAMPLES = 500_000
-# Five floors of the largest bed in our profiles.  The work grows with the square of the ceilings.
+# Five floors of a bed of 250 × 210 mm.  The work grows with the square of the ceilings.
 MOST_CEILING_CM2 = 2500.0
 # The lattice avoids round numbers, where meshes have their edges.
 _JITTER = (0.4142135624, 0.7320508076)
