@@ -351,7 +351,8 @@ class _Binary:
                 raise _EndError
             raise ValueError("its vertices hold lists")
         self._at += rows.nbytes
-        return np.stack([rows[f"value{place}"] for place in index], axis=1).astype(np.float64)
+        with np.errstate(invalid="ignore"):  # a signalling NaN; what is not finite is refused later
+            return np.stack([rows[f"value{place}"] for place in index], axis=1).astype(np.float64)
 
     def polygons(self, element: _Element, corners: _Property) -> Iterator[Int]:
         """Faces as (k, corners), those with equally many corners together."""

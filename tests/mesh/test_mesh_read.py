@@ -221,6 +221,28 @@ def test_not_finite_in_binary_stl(tmp_path: Path) -> None:
     refused(path, "not finite")
 
 
+# In single precision, a NaN that announces itself: numpy warns when it is cast
+SIGNALLING_NAN = b"\x01\x00\x80\x7f"
+
+
+def test_a_signalling_nan_is_refused_without_a_warning(tmp_path: Path) -> None:
+    # fuzz: numpy's RuntimeWarning of the cast reached the terminal for PLY
+    stl = tmp_path / "a.stl"
+    stl.write_bytes(STL[:96] + SIGNALLING_NAN + STL[100:])
+    refused(stl, "not finite")
+    header = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 8\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "element face 12\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    vertices, faces = BOX
+    corners = np.asarray(vertices, "<f4").tobytes()
+    rows = b"".join(struct.pack("<B3i", 3, *face) for face in np.asarray(faces).tolist())
+    ply = tmp_path / "a.ply"
+    ply.write_bytes(header.encode() + SIGNALLING_NAN + corners[4:] + rows)
+    refused(ply, "not finite")
+
+
 def test_missing_folder_and_unreadable(tmp_path: Path) -> None:
     refused(tmp_path / "nowhere.stl", "does not exist")
     refused(tmp_path, "is a folder")
