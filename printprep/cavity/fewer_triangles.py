@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.aabb_tree import SurfaceTree
-from printprep.mesh.measure import area_normals, try_manifold
+from printprep.mesh.measure import area_normals, signed_volumes, try_manifold
 from printprep.mesh.self_intersections import self_intersections
 from printprep.mesh.weld import directed_edges
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.arrays import Float, Int
+    from printprep.arrays import Bool, Float, Int
 
 # A wall that is thinner than asked by more than the first is not accepted; then every place that
 # is thinner by more than the second is corrected.  The promise is 0.05.
@@ -49,12 +49,14 @@ MOST_PIECES = 4
 class Walls:
     """Samples of a cavity's surface, and the wall between each and the outside.
 
-    face : (k,) the face that each lies on;  at_mm : (k, 3);  away : (k, 3) unit vector away from
+    face : (k,) the face that each lies on;  borne : (k, 3) the corners of the face that it moves
+    with: one for a corner, two on an edge;  at_mm : (k, 3);  away : (k, 3) unit vector away from
     the outside;  missing_mm : (k,) how much thinner than asked the wall is, negative where it is
     thicker;  along : (k,) cosine between ``away`` and the inward normal of the face.
     """
 
     face: Int
+    borne: Bool
     at_mm: Float
     away: Float
     missing_mm: Float
@@ -105,7 +107,12 @@ def with_fewer_triangles(
     walls = measured(drawn, triangles, outside, wall_mm)
     if walls.worst_mm > LOST_MM:
         return _LOST if share < 1 else _uncorrected(walls)
-    points, walls = _corrected(drawn, triangles, outside, wall_mm, walls, raised=True)
+    points = drawn + _moves(len(drawn), triangles, walls, raised=True)
+    if _volume_mm3(points, triangles) < least_mm3:
+        return _LOST  # every further move takes some more
+    moved = np.flatnonzero((points != drawn).any(axis=1))
+    walls = measured(points, triangles, outside, wall_mm, _around(moved, triangles))
+    points, walls = _corrected(points, triangles, outside, wall_mm, walls)
     crossed = self_intersections(points, triangles)
     for rings in range(MOST_RETURNS):
         if not len(crossed.face):
@@ -116,14 +123,15 @@ def with_fewer_triangles(
             back = np.unique(triangles[_around(back, triangles)])
         points[back] = drawn[back]
         walls = measured(points, triangles, outside, wall_mm, _around(back, triangles))
-        points, walls = _corrected(points, triangles, outside, wall_mm, walls, raised=False)
+        points, walls = _corrected(points, triangles, outside, wall_mm, walls)
         crossed = self_intersections(points, triangles)
         walls = measured(points, triangles, outside, wall_mm)
     if walls.worst_mm > ACCEPTED_MM or len(crossed.face):
         return _uncorrected(walls, crossed.at_mm)
     solid, status = try_manifold(points, triangles)
-    sound = status == "NoError" and solid.volume() >= least_mm3
-    return replace(_LOST, solid=solid) if sound else _LOST
+    if status != "NoError" or solid.volume() < least_mm3:
+        return _LOST
+    return replace(_LOST, solid=solid)
 
 
 def _uncorrected(walls: Walls, crossed_mm: Float = _NOWHERE) -> Fewer:
@@ -140,21 +148,22 @@ def _uncorrected(walls: Walls, crossed_mm: Float = _NOWHERE) -> Fewer:
 
 
 def _corrected(
-    points: Float, faces: Int, outside: SurfaceTree, wall_mm: float, walls: Walls, *, raised: bool
+    points: Float, faces: Int, outside: SurfaceTree, wall_mm: float, walls: Walls
 ) -> tuple[Float, Walls]:
-    """(n, 3) mm, corners moved until no wall is too thin; and the walls of what moved last.
-
-    raised : whether corners also move toward the outside, where walls are thicker than asked.
-    """
+    """(n, 3) mm, corners moved until no wall is too thin; and the walls of what moved last."""
     for _ in range(MOST_CORRECTIONS):
-        if not raised and walls.worst_mm <= ACCEPTED_MM:
+        if walls.worst_mm <= ACCEPTED_MM:
             break
-        moves = _moves(len(points), faces, walls, raised=raised)
+        moves = _moves(len(points), faces, walls, raised=False)
         points = points + moves
         moved = np.flatnonzero(moves.any(axis=1))
         walls = measured(points, faces, outside, wall_mm, _around(moved, faces))
-        raised = False
     return points, walls
+
+
+def _volume_mm3(points: Float, faces: Int) -> float:
+    """Volume of a closed surface: points (n, 3) mm, faces (m, 3)."""
+    return float(signed_volumes((points - points.mean(axis=0))[faces]).sum())
 
 
 def _around(corners: Int, faces: Int) -> Int:
@@ -181,7 +190,7 @@ def measured(
 ) -> Walls:
     """The walls between a surface and the outside, at all faces (m, 3) or at some of them (k,)."""
     which = np.arange(len(faces)) if some is None else some
-    points, face = _samples(vertices, faces[which], wall_mm / SAMPLES_PER_WALL)
+    points, face, borne = _samples(vertices, faces[which], wall_mm / SAMPLES_PER_WALL)
     distance, nearest, hit = outside.nearest_faces(points)
     # Only corners of the outside that are near the surface count: those of faces that were hit.
     corners = outside.vertices[np.unique(outside.faces[np.unique(hit)])]
@@ -192,6 +201,7 @@ def measured(
     normals = _unit(area_normals(vertices[faces]))
     return Walls(
         face=face,
+        borne=np.concatenate([borne, np.ones((len(places), 3), dtype=bool)]),
         at_mm=at,
         away=away,
         missing_mm=wall_mm - np.concatenate([distance, back]),
@@ -206,13 +216,15 @@ def _unit(vectors: Float) -> Float:
     return unit
 
 
-def _samples(vertices: Float, faces: Int, spacing_mm: float) -> tuple[Float, Int]:
-    """(k, 3) mm, points on a surface at most a spacing apart, and (k,) a face that each lies on.
+def _samples(vertices: Float, faces: Int, spacing_mm: float) -> tuple[Float, Int, Bool]:
+    """Points on a surface at most a spacing apart: corners, and points on edges and inside facets.
 
-    They are the corners, points on the edges, and points inside the facets.
+    Returns (k, 3) mm, (k,) a face that each lies on, and (k, 3) the corners of that face that it
+    lies between.
     """
+    one, two = np.eye(3, dtype=bool), ~np.eye(3, dtype=bool)[[2, 0, 1]]
     corner, at = np.unique(faces, return_index=True)
-    points, face = [vertices[corner]], [at // 3]
+    points, face, borne = [vertices[corner]], [at // 3], [one[at % 3]]
 
     edges = np.sort(directed_edges(faces), axis=1)
     _, at = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_index=True)
@@ -223,6 +235,7 @@ def _samples(vertices: Float, faces: Int, spacing_mm: float) -> tuple[Float, Int
         for step in range(1, count):
             points.append(ends[some, 0] + (ends[some, 1] - ends[some, 0]) * (step / count))
             face.append(at[some] // 3)
+            borne.append(two[at[some] % 3])
 
     corners = vertices[faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
@@ -232,7 +245,8 @@ def _samples(vertices: Float, faces: Int, spacing_mm: float) -> tuple[Float, Int
         for weights in _inner_weights(int(count)):
             points.append(np.einsum("j,njk->nk", weights, corners[some]))
             face.append(some)
-    return np.concatenate(points), np.concatenate(face)
+            borne.append(np.ones((len(some), 3), dtype=bool))
+    return np.concatenate(points), np.concatenate(face), np.concatenate(borne)
 
 
 def _pieces(length_mm: Float, spacing_mm: float) -> Int:
@@ -254,7 +268,7 @@ def _inner_weights(count: int) -> Float:
 
 
 def _moves(count: int, faces: Int, walls: Walls, *, raised: bool) -> Float:
-    """(count, 3) mm, for each corner what moves the thinnest wall of its faces to where it belongs.
+    """(count, 3) mm, for each corner what moves the thinnest wall it bears to where it belongs.
 
     On a flat that is the wall as asked.  A chord of a curved surface is too thick in its middle, or
     too thin at its ends: it is set on the level set on average, as far as that is allowed.
@@ -264,11 +278,12 @@ def _moves(count: int, faces: Int, walls: Walls, *, raised: bool) -> Float:
     corners = faces[walls.face]
     smooth = (walls.along > ALONG) & (np.abs(walls.missing_mm) < LOST_MM)
     thickest = np.full(count, np.inf)
-    for corner in corners[smooth].T:
-        np.minimum.at(thickest, corner, walls.missing_mm[smooth])
+    bears = smooth[:, None] & walls.borne
+    np.minimum.at(thickest, corners[bears], np.repeat(walls.missing_mm, bears.sum(axis=1)))
     order = np.argsort(walls.missing_mm, kind="stable")
     last = np.full(count, -1)
-    last[corners[order].ravel()] = np.repeat(order, 3)  # the thinnest is written last and stays
+    # The thinnest is written last and stays
+    last[corners[order][walls.borne[order]]] = np.repeat(order, walls.borne[order].sum(axis=1))
     used = np.flatnonzero(last >= 0)
     thinnest = last[used]
     thin = walls.missing_mm[thinnest] > CORRECTED_MM
