@@ -18,8 +18,9 @@ from promises import broken_promises
 
 from printprep import hollow
 from printprep.errors import PrintprepError
-from printprep.mesh.measure import arrays
+from printprep.mesh.measure import arrays, together
 from printprep.mesh.sealed_voids import sealed_voids
+from printprep.profiles import load_profile
 
 CORPUS = Path(__file__).resolve().parent / "corpus"
 PROFILES = ("fdm-pla-0.4", "fdm-petg-0.4", "resin-standard", "resin-msla-mono", "sls-pa12")
@@ -154,7 +155,10 @@ def judge(recipe: Recipe, *, twice: bool = False) -> list[str]:
 
 
 def _placed(solid: Manifold, recipe: Recipe) -> Manifold:
-    """The solid on the plate, its empty voids filled, by arithmetic of its own."""
+    """The solid on the plate without what prints nothing, its empty voids filled.
+
+    By arithmetic of its own: bodies below the profile's least volume are left out, and said.
+    """
     filled = sealed_voids(solid).whole if recipe.voids == "fill" else solid
     if recipe.voids == "keep":
         shells = [part for part in solid.decompose() if part.volume() > 0]
@@ -162,4 +166,8 @@ def _placed(solid: Manifold, recipe: Recipe) -> Manifold:
     low, high = np.reshape(filled.bounding_box(), (2, 3))
     factor = recipe.size_mm / float((high - low).max())
     middle = (low + high) / 2
-    return filled.translate((-middle[0], -middle[1], -low[2])).scale((factor,) * 3)
+    placed = filled.translate((-middle[0], -middle[1], -low[2])).scale((factor,) * 3)
+    crumb_mm3 = load_profile(recipe.profile).crumb_mm3
+    shells = placed.decompose()
+    prints = [shell for shell in shells if abs(shell.volume()) >= crumb_mm3]
+    return placed if len(prints) == len(shells) else together(prints)
