@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.density.column_program import INFINITE, ColumnProgram
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -55,8 +57,7 @@ class Fillings:
     def __init__(self, moments: Float) -> None:
         """moments : (4, n) W."""
         self.moments = np.ascontiguousarray(moments)
-        total = self.moments.sum(axis=1)
-        self._columns: list[Float] = [np.zeros(4), total]
+        self._columns = np.stack([np.zeros(4), self.moments.sum(axis=1)])
 
     def cheapest(self, cost: Float) -> tuple[Float, NDArray[np.bool_]]:
         """The filling that minimises cost · W ρ: its moments (4,), and its full voxels (n,) bool.
@@ -80,16 +81,17 @@ class Fillings:
         t, and the moments (4,) of a filling that reaches it (a mean of half-space fillings).
         """
         scale = np.abs(constraints @ (fixed + self._columns[1])).max() + 1e-300
+        program = _MaxMin(constraints @ (self._columns + fixed).T)
         while True:
-            columns = np.array(self._columns).T + fixed[:, None]
-            worst, weights, multipliers = _max_min(constraints @ columns)
+            worst, weights, multipliers = program.solve()
             if worst > 1e-9 * scale:
                 break
             column, _ = self.cheapest(-(multipliers @ constraints))
             best = float(multipliers @ constraints @ (column + fixed))
             if best - worst <= 1e-9 * scale or not self._add(column):
                 break
-        return worst, columns @ weights
+            program.add(constraints @ (column + fixed))
+        return worst, weights @ self._columns + fixed
 
     def lightest(self, fixed: Float, constraints: Float, gap: float = 1e-7) -> Filling | None:
         """Find the filling of least mass with H s ≥ 0, with proof; None when no filling has it.
@@ -116,15 +118,16 @@ class Fillings:
     def _price(self, fixed: Float, constraints: Float) -> Float:
         """(k,) multipliers near the optimal ones, by column generation."""
         mass = np.array([1.0, 0.0, 0.0, 0.0])
-        multipliers = np.zeros(len(constraints))
+        columns = (self._columns + fixed).T
+        program = _LeastCost(columns[0], constraints @ columns)
         for _ in range(MOST_ROUNDS):
-            columns = np.array(self._columns).T + fixed[:, None]
-            value, multipliers = _least_cost(columns[0], constraints @ columns)
+            value, multipliers = program.solve()
             cost = mass - multipliers @ constraints
             column, _ = self.cheapest(cost)
             bound = float(cost @ (column + fixed))
             if value - bound <= 1e-6 * value or not self._add(column):
                 break
+            program.add(float(column[0] + fixed[0]), constraints @ (column + fixed))
         return multipliers
 
     def _finish(self, fixed: Float, constraints: Float, multipliers: Float, gap: float) -> Filling:
@@ -158,50 +161,70 @@ class Fillings:
     def _add(self, column: Float) -> bool:
         """Keep the moments (4,) of a half-space filling; False when they are known already."""
         size = np.abs(self._columns[1]) + 1e-300
-        if any(np.all(np.abs(column - known) <= 1e-13 * size) for known in self._columns):
+        if (np.abs(self._columns - column) <= 1e-13 * size).all(axis=1).any():
             return False
-        self._columns.append(column)
+        self._columns = np.vstack([self._columns, column])
         return True
 
 
-def _max_min(values: Float) -> tuple[float, Float, Float]:
-    """Largest t with values (k, c) @ w ≥ t, w ≥ 0, Σw = 1; w (c,); multipliers (k,), of sum 1."""
-    from scipy.optimize import linprog
+class _MaxMin:
+    """The largest t with values (k, c) @ w ≥ t, where w ≥ 0 and Σw = 1."""
 
-    rows, count = values.shape
-    scale = np.abs(values).max() + 1e-300
-    result = linprog(
-        np.append(np.zeros(count), -1.0),
-        A_ub=np.hstack([-values / scale, np.ones((rows, 1))]),
-        b_ub=np.zeros(rows),
-        A_eq=np.append(np.ones(count), 0.0)[None],
-        b_eq=[1.0],
-        bounds=[(0, None)] * count + [(None, None)],
-        method="highs-ds",
-        options={"presolve": False},
-    )
-    multipliers = np.maximum(-result.ineqlin.marginals, 0)
-    return float(result.x[-1] * scale), result.x[:-1], multipliers / multipliers.sum()
+    def __init__(self, values: Float) -> None:
+        """values : (k, c)."""
+        rows, count = values.shape
+        self._scale = np.abs(values).max() + 1e-300
+        self._program = ColumnProgram(
+            np.append(-1.0, np.zeros(count)),
+            np.block([[-np.ones((rows, 1)), values / self._scale], [0.0, np.ones(count)]]),
+            rows=(np.append(np.zeros(rows), 1.0), np.append(np.full(rows, INFINITE), 1.0)),
+            bounds=(np.append(-INFINITE, np.zeros(count)), np.full(count + 1, INFINITE)),
+        )
+
+    def add(self, values: Float) -> None:
+        """Add a column (k,)."""
+        self._program.add(0.0, np.append(values / self._scale, 1.0))
+
+    def solve(self) -> tuple[float, Float, Float]:
+        """t, w (c,), and multipliers (k,) of sum 1."""
+        found = self._program.solve()
+        if found is None:
+            raise ArithmeticError("The solver finds no weights, though any one of them is some.")
+        multipliers = np.maximum(found.multipliers[:-1], 0)
+        weights = np.maximum(found.x[1:], 0)
+        return (
+            float(found.x[0] * self._scale),
+            weights / weights.sum(),
+            multipliers / multipliers.sum(),
+        )
 
 
-def _least_cost(costs: Float, values: Float) -> tuple[float, Float]:
-    """Least costs (c,) @ w with values (k, c) @ w ≥ 0, w ≥ 0, Σw = 1; the multipliers (k,)."""
-    from scipy.optimize import linprog
+class _LeastCost:
+    """The least costs (c,) @ w with values (k, c) @ w ≥ 0, where w ≥ 0 and Σw = 1."""
 
-    scale = np.abs(values).max() + 1e-300
-    unit = costs.max()
-    result = linprog(
-        costs / unit,
-        A_ub=-values / scale,
-        b_ub=np.zeros(len(values)),
-        A_eq=np.ones((1, len(costs))),
-        b_eq=[1.0],
-        method="highs-ds",
-        options={"presolve": False},
-    )
-    if result.status != 0:
-        return float("inf"), np.zeros(len(values))
-    return float(result.fun * unit), np.maximum(-result.ineqlin.marginals, 0) * unit / scale
+    def __init__(self, costs: Float, values: Float) -> None:
+        """costs : (c,), some above 0;  values : (k, c)."""
+        rows, count = values.shape
+        self._scale = np.abs(values).max() + 1e-300
+        self._unit, self._rows = costs.max(), rows
+        self._program = ColumnProgram(
+            costs / self._unit,
+            np.vstack([values / self._scale, np.ones(count)]),
+            rows=(np.append(np.zeros(rows), 1.0), np.append(np.full(rows, INFINITE), 1.0)),
+            bounds=(np.zeros(count), np.full(count, INFINITE)),
+        )
+
+    def add(self, cost: float, values: Float) -> None:
+        """Add a column (k,) and its cost."""
+        self._program.add(cost / self._unit, np.append(values / self._scale, 1.0))
+
+    def solve(self) -> tuple[float, Float]:
+        """The least cost, +inf where there is none, and the multipliers (k,)."""
+        found = self._program.solve()
+        if found is None:
+            return INFINITE, np.zeros(self._rows)
+        multipliers = np.maximum(found.multipliers[:-1], 0) * self._unit / self._scale
+        return found.cost * self._unit, multipliers
 
 
 def _band_program(outside: Float, constraints: Float, moments: Float) -> tuple[Float, Float] | None:
@@ -209,19 +232,16 @@ def _band_program(outside: Float, constraints: Float, moments: Float) -> tuple[F
 
     outside : (4,) moments of all else;  constraints : (k, 4) H;  moments : (4, n) of the voxels.
     """
-    from scipy.optimize import linprog
-
     rows = constraints @ moments
+    count = rows.shape[1]
     scale = np.abs(rows).max() + 1e-300
     unit = moments[0].max()
-    result = linprog(
+    found = ColumnProgram(
         moments[0] / unit,
-        A_ub=-rows / scale,
-        b_ub=constraints @ outside / scale,
-        bounds=(0, 1),
-        method="highs-ds",
-        options={"presolve": False},
-    )
-    if result.status != 0:
+        rows / scale,
+        rows=(-(constraints @ outside) / scale, np.full(len(rows), INFINITE)),
+        bounds=(np.zeros(count), np.ones(count)),
+    ).solve()
+    if found is None:
         return None
-    return np.clip(result.x, 0, 1), np.maximum(-result.ineqlin.marginals, 0) * unit / scale
+    return np.clip(found.x, 0, 1), np.maximum(found.multipliers, 0) * unit / scale
