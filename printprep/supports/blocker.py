@@ -21,6 +21,7 @@ from printprep.errors import GeometryError
 from printprep.grid.distance import DepthField, Surface
 from printprep.mesh.measure import arrays
 from printprep.mesh.quantize import quantized
+from printprep.mesh.weld import directed_edges, opposite_edges
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -103,9 +104,9 @@ def depth_mm(blocker: Manifold, outside: Manifold) -> tuple[float, tuple[float, 
 def _least_depth(blocker: Manifold, outside: Surface) -> tuple[float, Float]:
     """Least depth, over corners and middles of edges and facets; and (3,) mm, where."""
     vertices, faces = arrays(blocker)
-    corners: Float = vertices[faces]
-    edges = (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3) / 2
-    points = np.concatenate([vertices, corners.mean(axis=1), edges])
+    first, _ = opposite_edges(faces)
+    edges = vertices[directed_edges(faces)[first]].mean(axis=1)
+    points = np.concatenate([vertices, vertices[faces].mean(axis=1), edges])
     depth = outside.depth_mm(points)
     least = int(np.argmin(depth))
     return float(depth[least]), points[least]
