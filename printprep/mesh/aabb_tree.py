@@ -8,6 +8,7 @@ for, rays go through libigl's tree too, about twenty times as slowly.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,12 @@ from printprep.mesh.measure import area_normals
 
 if TYPE_CHECKING:
     from printprep.arrays import Bool, Float, Int
+
+# A triangle is long where an edge is longer than the mesh's longest side over this.
+LONG_SHARE = 10
+# Pieces of long triangles, beside the few that every mesh may have, to one triangle.
+MOST_PIECES = 2
+FEW_FACES = 20_000
 
 
 def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
@@ -45,8 +52,9 @@ class SurfaceTree:
 
         self.vertices = np.ascontiguousarray(vertices, dtype=np.float64)
         self.faces = np.ascontiguousarray(faces, dtype=np.int64)
+        self._pieces = _bisected(self.vertices, self.faces)
         self._tree: Any = igl.AABB()
-        self._tree.init(self.vertices, self.faces)
+        self._tree.init(self._pieces.vertices, self._pieces.faces)
         # A ray that starts on the surface is moved forward by this much.
         self._centre_mm = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2
         self._beyond_mm = 1e-6 * float(np.ptp(vertices, axis=0).max())
@@ -60,11 +68,11 @@ class SurfaceTree:
         """The same, and (k,) the face that the nearest point lies on."""
         if len(points) == 0:
             return np.zeros(0), np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
-        squared, face, closest = self._tree.squared_distance(
-            self.vertices, self.faces, np.ascontiguousarray(points)
+        squared, piece, closest = self._tree.squared_distance(
+            self._pieces.vertices, self._pieces.faces, np.ascontiguousarray(points)
         )
         distance = np.sqrt(np.maximum(np.ravel(squared), 0.0))
-        return distance, np.reshape(closest, (-1, 3)), np.ravel(face).astype(np.int64)
+        return distance, np.reshape(closest, (-1, 3)), self._pieces.owner[np.ravel(piece)]
 
     def first_hit(self, points: Float, directions: Float) -> tuple[Float, Int]:
         """(k,) mm to the first hit of each ray, and (k,) the face that it hits.
@@ -92,10 +100,14 @@ class SurfaceTree:
         if len(points) == 0:
             return np.zeros(0), np.zeros(0, dtype=np.int64)
         starts = np.ascontiguousarray(points + self._beyond_mm * directions)
-        face, along, _ = self._tree.intersect_ray_first(
-            self.vertices, self.faces, starts, np.ascontiguousarray(directions)
+        piece, along, _ = self._tree.intersect_ray_first(
+            self._pieces.vertices,
+            self._pieces.faces,
+            starts,
+            np.ascontiguousarray(directions),
         )
-        face = np.ravel(face).astype(np.int64)
+        piece = np.ravel(piece)
+        face = np.where(piece >= 0, self._pieces.owner[piece], -1)
         return np.where(face >= 0, np.ravel(along) + self._beyond_mm, np.inf), face
 
     def may_hit(self, points: Float, directions: Float, within_mm: Float) -> Bool:
@@ -126,6 +138,45 @@ class SurfaceTree:
         moved = (self.vertices - self._centre_mm).astype(np.float32)
         TriangleMesh(scene, moved, self.faces.astype(np.int32))
         return scene
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """Triangles, the long ones in pieces.
+
+    vertices : (n, 3) mm;  faces : (m, 3);  owner : (m,) the triangle that each is a piece of.
+    """
+
+    vertices: Float
+    faces: Int
+    owner: Int
+
+
+def _bisected(vertices: Float, faces: Int) -> _Pieces:
+    """Triangles (m, 3) with the long ones halved until none is long, in a soup.
+
+    A box of the tree around a long triangle holds many small ones that are not near it: in a tree
+    of pieces a nearest point is found up to four times as fast.
+    """
+    pieces = _Pieces(vertices, faces, np.arange(len(faces)))
+    if not len(faces):
+        return pieces
+    long_mm = float(np.ptp(vertices, axis=0).max()) / LONG_SHARE
+    every, owner, some = faces, pieces.owner, np.arange(len(faces))
+    while True:
+        corners = vertices[every[some]]
+        edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        long = edges.max(axis=1) > long_mm
+        some, first = some[long], edges.argmax(axis=1)[long]
+        if not len(some) or len(every) + len(some) > MOST_PIECES * len(faces) + FEW_FACES:
+            return _Pieces(vertices, every, owner)
+        a, b, c = (every[some, (first + step) % 3] for step in range(3))
+        middle = len(vertices) + np.arange(len(some))
+        vertices = np.concatenate([vertices, (vertices[a] + vertices[b]) / 2])
+        every = np.concatenate([every, np.stack([middle, b, c], axis=1)])
+        every[some] = np.stack([a, middle, c], axis=1)
+        owner = np.concatenate([owner, owner[some]])
+        some = np.concatenate([some, np.arange(len(every) - len(some), len(every))])
 
 
 # Trees are kept as long as they have no more faces together; one takes 172 bytes for libigl's tree.

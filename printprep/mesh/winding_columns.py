@@ -103,7 +103,7 @@ def _summed(crossings: Crossings, count: int, column_of: Int, z_mm: Float) -> Fl
     """
     if np.array_equal(column_of, np.arange(count)):  # one point each: nothing to sort
         above = crossings.z_mm > z_mm[crossings.column]
-        return np.bincount(crossings.column[above], crossings.sign[above], count)
+        return np.bincount(crossings.column[above], crossings.sign[above], count).astype(np.float64)
     order = np.lexsort((z_mm, column_of))
     # Both lists are sorted by column, then upward, so one merge finds the place of every point.
     both = np.concatenate([crossings.column, column_of[order]])

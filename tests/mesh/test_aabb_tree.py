@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
@@ -81,3 +82,41 @@ def test_the_tree_of_the_same_mesh_is_the_same(monkeypatch: pytest.MonkeyPatch) 
     for radius in (1, 2, 3):
         tree_of(*ball(radius))
     assert tree_of(vertices, faces) is not first
+
+
+@examples(30)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 60))
+def test_long_triangles_are_searched_in_pieces(seed: int, count: int) -> None:
+    # Each piece answers for its triangle; judged by every distance there is
+    rng = np.random.default_rng(seed)
+    vertices = rng.uniform(-1, 1, (3 * count, 3)) * [100, 1, 10]
+    faces = np.arange(3 * count).reshape(-1, 3)
+    tree = SurfaceTree(vertices, faces)
+    points = rng.uniform(-2, 2, (50, 3)) * [60, 30, 30]
+    distance, nearest, face = tree.nearest_faces(points)
+    each = trimesh.triangles.closest_point(
+        np.repeat(vertices[faces], 50, axis=0), np.tile(points, (count, 1))
+    ).reshape(count, 50, 3)
+    far = np.linalg.norm(each - points, axis=2)
+    assert distance == pytest.approx(far.min(axis=0), rel=1e-9, abs=1e-9)
+    assert np.linalg.norm(nearest - points, axis=1) == pytest.approx(distance, rel=1e-9)
+    assert far[face, np.arange(50)] == pytest.approx(distance, rel=1e-9, abs=1e-9)
+    corners = vertices[faces[face]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    assert np.einsum("ij,ij->i", nearest - corners[:, 0], normal) == pytest.approx(0, abs=1e-6)
+    starts = np.column_stack([rng.uniform(-100, 100, 200), np.zeros(200), np.full(200, -20.0)])
+    up = np.tile([0.0, 0.0, 1.0], (200, 1))
+    hit, met = tree.first_hit_exactly(starts, up)
+    assert ((met >= 0) == np.isfinite(hit)).all()
+    at = starts + np.where(met >= 0, hit, 0.0)[:, None] * up
+    off = trimesh.triangles.closest_point(vertices[faces[met]], at) - at
+    assert np.linalg.norm(off, axis=1)[met >= 0] == pytest.approx(0, abs=1e-4)
+
+
+def test_many_long_slivers_stay_whole() -> None:
+    # a cylinder of 40,000 sides: pieces of all would be more than the tree gains
+    vertices, faces = arrays(Manifold.cylinder(100, 10, 10, 20_000))
+    tree = SurfaceTree(vertices, faces)
+    assert len(tree._pieces.faces) <= aabb_tree.MOST_PIECES * len(faces) + aabb_tree.FEW_FACES
+    assert tree.nearest(np.array([[0.0, 0.0, 50.0]]))[0] == pytest.approx(10, rel=1e-6)
