@@ -39,8 +39,8 @@ PROMISED_MM = 0.045
 FLAT_MM = 0.01
 # Shares of the triangles that are tried, the fewest first.
 SHARES = (1 / 8, 1 / 4, 1 / 2, 1.0)
-# Most of the material around the cavity that fewer triangles may add: a third of a percent.
-LOST_SHARE = 0.003
+# Most of the material around the cavity that fewer triangles may add: half a percent.
+LOST_SHARE = 0.005
 
 
 def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) -> Manifold:
