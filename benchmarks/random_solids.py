@@ -42,10 +42,10 @@ def main() -> int:
         broken = judge(recipe, twice=tried % 5 == 0)
         if broken:
             kind = broken[0].split(":")[0]
+            print(f"{tried}: {broken}\n{recipe.to_json()}", flush=True)
             known = failures.get(kind)
             if known is None or len(recipe.steps) < len(known[0].steps):
                 failures[kind] = recipe, broken
-                print(f"{tried}: {broken}\n{recipe.to_json()}", flush=True)
             if not given_.no_shrink:
                 raise AssertionError(kind)
 

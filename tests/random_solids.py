@@ -170,4 +170,7 @@ def _placed(solid: Manifold, recipe: Recipe) -> Manifold:
     crumb_mm3 = load_profile(recipe.profile).crumb_mm3
     shells = placed.decompose()
     prints = [shell for shell in shells if abs(shell.volume()) >= crumb_mm3]
-    return placed if len(prints) == len(shells) else together(prints)
+    if len(prints) == len(shells):
+        return placed
+    stands = together(prints)
+    return stands.translate((0.0, 0.0, -stands.bounding_box()[2]))

@@ -164,10 +164,10 @@ def _bisected(vertices: Float, faces: Int) -> _Pieces:
     long_mm = float(np.ptp(vertices, axis=0).max()) / LONG_SHARE
     every, owner, some = faces, pieces.owner, np.arange(len(faces))
     while True:
-        corners = vertices[every[some]]
-        edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        long = edges.max(axis=1) > long_mm
-        some, first = some[long], edges.argmax(axis=1)[long]
+        a, b, c = (vertices[every[some, corner]] for corner in range(3))
+        edges = np.stack([((p - q) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))])
+        long = edges.max(axis=0) > long_mm**2
+        some, first = some[long], edges.argmax(axis=0)[long]
         if not len(some) or len(every) + len(some) > MOST_PIECES * len(faces) + FEW_FACES:
             return _Pieces(vertices, every, owner)
         a, b, c = (every[some, (first + step) % 3] for step in range(3))
@@ -180,5 +180,5 @@ def _bisected(vertices: Float, faces: Int) -> _Pieces:
 
 
 # Trees are kept as long as they have no more faces together; one takes 172 bytes for libigl's tree.
-_MOST_FACES = 1_500_000
+_MOST_FACES = 5_200_000
 _KEPT: dict[bytes, SurfaceTree] = {}

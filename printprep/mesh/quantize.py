@@ -7,6 +7,7 @@ the part is rounded first, and all checks and files start from the rounded part.
 
 from __future__ import annotations
 
+from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,8 +80,23 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
 
     Returns (n, 3) float64 mm with float32 values, in lexicographic order, and (m, 3) int64,
     counter-clockwise seen from outside, each from its smallest index on, sorted: the same solid
-    gives the same arrays.
+    gives the same arrays, which are read-only.
     """
+    for known, found in _LAST:
+        if known is manifold:
+            return found
+    found = _quantized_arrays(manifold)
+    for array in found:
+        array.setflags(write=False)
+    _LAST.append((manifold, found))
+    return found
+
+
+# Of the last solids: a part is written, measured and checked by the same arrays.
+_LAST: deque[tuple[Manifold, tuple[Float, Int]]] = deque(maxlen=2)
+
+
+def _quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     points, corners = arrays(manifold)
     vertices, index = unique_rows(rounded(points))
     faces = drop_collapsed(index[corners])

@@ -175,11 +175,21 @@ def _candidates(corners: Float, columns: Float) -> Iterator[tuple[Int, Int]]:
     )
     first, last = np.maximum(lowest_row, 0), np.maximum(highest_row + 1, 0)
     triangle, strip = _runs(np.arange(len(corners)), first, last)
+    slack, ordered = 1e-9 * stretch, key[order]
+
+    def stretches(left: Float, right: Float, strip: Int) -> tuple[Int, Int]:
+        """The columns of strips between two x: their first in order, and one after the last."""
+        lowest = strip * stretch + np.clip(left - low[0] - slack, -stretch / 4, stretch / 2)
+        highest = strip * stretch + np.clip(right - low[0] + slack, -stretch / 4, stretch / 2)
+        return np.searchsorted(ordered, lowest), np.searchsorted(ordered, highest)
+
+    # Most small triangles have no column within their bounds
+    x = corners[:, :, 0]
+    begin, end = stretches(x.min(axis=1)[triangle], x.max(axis=1)[triangle], strip)
+    some = begin < end
+    triangle, strip = triangle[some], strip[some]
     left, right = _covered(corners[triangle], low[1] + strip * height, height)
-    slack = 1e-9 * stretch
-    lowest = strip * stretch + np.clip(left - low[0] - slack, -stretch / 4, stretch / 2)
-    highest = strip * stretch + np.clip(right - low[0] + slack, -stretch / 4, stretch / 2)
-    begin, end = np.searchsorted(key[order], lowest), np.searchsorted(key[order], highest)
+    begin, end = stretches(left, right, strip)
     end = np.maximum(begin, end)
     parts = np.searchsorted(np.cumsum(end - begin), np.arange(0, (end - begin).sum(), _PAIRS))
     for start, stop in pairwise([*parts.tolist(), len(triangle)]):
