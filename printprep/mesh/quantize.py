@@ -16,7 +16,7 @@ from printprep.errors import GeometryError
 from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
 from printprep.mesh.rounding import rounded
-from printprep.mesh.weld import directed_edges, drop_collapsed, is_closed, unique_rows
+from printprep.mesh.weld import directed_edges, drop_collapsed, in_order, is_closed, unique_rows
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -102,10 +102,7 @@ def _quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     faces = drop_collapsed(index[corners])
     used = np.zeros(len(vertices), dtype=bool)
     used[faces] = True
-    faces = (np.cumsum(used) - 1)[faces]
-    first = faces.argmin(axis=1)[:, None]
-    faces = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
-    return vertices[used], faces[np.lexsort(faces.T[::-1])]
+    return vertices[used], in_order((np.cumsum(used) - 1)[faces])
 
 
 def _is_rounded(manifold: Manifold, vertices: int, faces: int) -> bool:

@@ -164,6 +164,13 @@ def compact(vertices: Float, faces: Int) -> tuple[Float, Int]:
     return vertices[used[by_use]], rank[index.reshape(-1, 3)]
 
 
+def in_order(faces: Int) -> Int:
+    """Faces (m, 3), each from its smallest vertex on, sorted: the same for any order of them."""
+    first = faces.argmin(axis=1)[:, None]
+    turned: Int = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
+    return turned[np.lexsort(turned.T[::-1])]
+
+
 def directed_edges(faces: Int) -> Int:
     """(3m, 2) vertex pairs (from, to) of faces (m, 3), face by face, three of each in order."""
     return np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)

@@ -8,18 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.measure import area_normals, arrays, from_arrays, volume_and_centre
+from printprep.mesh.weld import in_order
 from printprep.stand.footing import Footing
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from printprep.arrays import Float
+    from printprep.arrays import Bool, Float
 
 
 # Hull triangles whose normals differ by less than this carry the solid together, and poses whose
 # down directions differ by less are one pose: a hundredth of a usual lean.
 SAME_DEG = 0.1
 MOST_POSES = 12
+# Poses that are looked at together, to bound the memory.
+_AT_ONCE = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +43,15 @@ def stable_poses(solid: Manifold) -> tuple[Pose, ...]:
     A pose is a facet of the convex hull with the centre of mass above its inside; its tilt angle
     is atan(distance to the nearest edge of the facet / height), as for any support polygon.
     """
-    vertices, faces = arrays(solid.hull())
+    vertices, index = arrays(solid.hull())
+    faces = in_order(index)  # the kernel sorts the triangles of a large hull on several threads
     centre = np.array(volume_and_centre(solid)[1])
     normals = area_normals(vertices[faces])
     area = np.linalg.norm(normals, axis=1)
     normals = normals[area > 0] / area[area > 0, None]
+    downs = normals[np.argsort(-area[area > 0], kind="stable")]
     poses: list[tuple[Float, Pose]] = []
-    for down in normals[np.argsort(-area[area > 0], kind="stable")]:
+    for down in downs[_may_stand(downs, vertices, centre)]:
         if any(down @ known > np.cos(np.radians(SAME_DEG)) for known, _ in poses):
             continue
         pose = _pose(down, vertices, centre)
@@ -68,6 +73,34 @@ def in_pose(manifold: Manifold, pose: Pose) -> tuple[Manifold, Float]:
     return from_arrays(turned + move[:3, 3], faces), move
 
 
+def _touch_mm(vertices: Float) -> float:
+    """How far above the bed a corner of a hull (n, 3) mm may be that touches it."""
+    return float(np.ptp(vertices, axis=0).max() * np.radians(SAME_DEG))
+
+
+def _may_stand(downs: Float, vertices: Float, centre: Float) -> Bool:
+    """(k,) false where a solid surely falls out of a pose.
+
+    It does where the point under its centre of mass lies outside the box around what touches.
+    downs : (k, 3) unit vectors;  vertices : (n, 3) mm, of the hull;  centre : (3,) mm.
+    """
+    touch_mm = _touch_mm(vertices)
+    stands: Bool = np.zeros(len(downs), dtype=bool)
+    for start in range(0, len(downs), _AT_ONCE):
+        some = downs[start : start + _AT_ONCE]
+        heights = some @ vertices.T
+        top = heights.max(axis=1)
+        touching = heights > (top - touch_mm)[:, None]
+        under = centre + (top - some @ centre)[:, None] * some
+        within = np.ones(len(some), dtype=bool)
+        for axis, at in enumerate(vertices.T):
+            low = np.where(touching, at, np.inf).min(axis=1) - touch_mm
+            high = np.where(touching, at, -np.inf).max(axis=1) + touch_mm
+            within &= (low <= under[:, axis]) & (under[:, axis] <= high)
+        stands[start : start + _AT_ONCE] = within
+    return stands
+
+
 def _pose(down: Float, vertices: Float, centre: Float) -> Pose | None:
     """The pose with a normal of the hull pointing down, None where the solid falls out of it.
 
@@ -75,8 +108,7 @@ def _pose(down: Float, vertices: Float, centre: Float) -> Pose | None:
     """
     rotation = _turn_down(down)
     height = vertices @ down
-    reach = float(np.ptp(vertices, axis=0).max())
-    touching = vertices[height > height.max() - reach * np.radians(SAME_DEG)]
+    touching = vertices[height > height.max() - _touch_mm(vertices)]
     flat = (touching @ rotation.T)[:, :2]
     footing = _footing(flat)
     if footing is None:

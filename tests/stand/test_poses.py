@@ -7,7 +7,9 @@ import pytest
 import solids
 from hypothesis import given
 from hypothesis import strategies as st
+from manifold3d import Manifold
 
+from printprep.mesh.measure import arrays
 from printprep.stand.poses import in_pose, stable_poses
 from printprep.stand.stability import stability
 
@@ -40,3 +42,28 @@ def test_poses_do_not_depend_on_how_it_came(x: float, y: float, z: float) -> Non
     box = solids.box(10, 20, 40)
     ours = [pose.tilt_deg for pose in stable_poses(box.rotate((x, y, z)))]
     assert ours == pytest.approx([pose.tilt_deg for pose in stable_poses(box)], abs=0.05)
+
+
+def test_poses_are_the_same_for_any_order_of_the_hull_s_triangles(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The kernel sorts large hulls on several threads: two runs in forty gave another order
+    from printprep.stand import poses
+
+    rng = np.random.default_rng(0)
+    solid = Manifold.hull_points(rng.normal(size=(300, 3)) * [30, 20, 10])
+    expected = stable_poses(solid)
+    vertices, faces = arrays(solid.hull())
+
+    def in_another_order(_: Manifold) -> tuple[np.ndarray, np.ndarray]:
+        turned = np.array([np.roll(face, rng.integers(3)) for face in rng.permutation(faces)])
+        return vertices, turned
+
+    monkeypatch.setattr(poses, "arrays", in_another_order)
+    for _ in range(20):
+        found = stable_poses(solid)
+        assert [pose.tilt_deg for pose in found] == [pose.tilt_deg for pose in expected]
+        assert all(
+            (one.rotation == other.rotation).all()
+            for one, other in zip(found, expected, strict=True)
+        )
