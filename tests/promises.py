@@ -89,6 +89,14 @@ def _beside_drains(judged: Judged, points: Float) -> NDArray[np.bool_]:
     return near
 
 
+def _bounds(solid: Manifold, points: Float, normals: Float) -> NDArray[np.bool_]:
+    """Which points of a surface bound a solid: a crack or a fin of no thickness bounds nothing."""
+    inside, outside = (
+        _winding(points + step * normals, *arrays(solid)) > 0.5 for step in (-1e-3, 1e-3)
+    )
+    return inside & ~outside
+
+
 def _closed_off(standing: Manifold, points: Float) -> NDArray[np.bool_]:
     """Which points lie on voids that a base closes off from the air: those are filled."""
     off = np.zeros(len(points), dtype=bool)
@@ -128,11 +136,15 @@ def _outside(judged: Judged) -> list[str]:
     squared, _, _ = igl.point_mesh_squared_distance(
         points[free], judged.written.vertices, judged.written.faces
     )
-    off = float(np.sqrt(squared.max(initial=0.0)))
+    distance = np.sqrt(squared)
+    far = distance > OFF_MM
+    normals = model.face_normals[faces][free]
+    distance[far] *= _bounds(judged.outside, points[free][far], normals[far])
+    off = float(distance.max(initial=0.0))
     if off > OFF_MM:
         broken.append(f"1: the model's surface lies {off:.3g} mm off the part")
     # Just under the model's surface there is material.
-    under = points[free] - 0.3 * judged.result.profile.wall_mm * model.face_normals[faces][free]
+    under = points[free] - 0.3 * judged.result.profile.wall_mm * normals
     in_model = _winding(under, *arrays(judged.outside)) > 0.99
     squared, _, _ = igl.point_mesh_squared_distance(under, *arrays(judged.outside))
     in_model &= ~_in_own_voids(judged, under)
