@@ -46,6 +46,11 @@ class Feet:
     seat_mm: float
 
 
+def slab_of(solid: Manifold, seat_mm: float) -> Manifold:
+    """What of a solid lies in the height of a base's seat."""
+    return solid.trim_by_plane((0, 0, -1), -seat_mm)
+
+
 def feet_of(solid: Manifold, seat_mm: float, first_layer_mm: float, layer_mm: float) -> Feet:
     """Find the feet of a solid and carry them down to the bed, in steps of its layers.
 
@@ -54,7 +59,7 @@ def feet_of(solid: Manifold, seat_mm: float, first_layer_mm: float, layer_mm: fl
     """
     from manifold3d import Manifold, OpType
 
-    slab = solid.trim_by_plane((0, 0, -1), -seat_mm)
+    slab = slab_of(solid, seat_mm)
     bottoms = np.append(0.0, np.arange(first_layer_mm, seat_mm - layer_mm / 2, layer_mm))
     tops = np.append(bottoms[1:], seat_mm)
     columns = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,18 +63,21 @@ def ball_mm3(diameter_mm: float) -> float:
 def make_part(
     solid: Solid, base: Base | None, cavities: Sequence[Manifold], crumb_mm3: float = 0.0
 ) -> Part:
-    """Unite the solid with its base and subtract the cavities.
+    """Unite the solid with its base and subtract the cavities; finished as it will be written."""
+    return finished(rough_part(solid, base, cavities), crumb_mm3)
 
-    The part's coordinates are rounded as in a written file.  The voids of the model that stay are
-    cavities like those that are cut.
+
+def rough_part(solid: Solid, base: Base | None, cavities: Sequence[Manifold]) -> Part:
+    """The same part, not yet finished.
+
+    The voids of the model that stay are cavities like those that are cut.
     """
     from manifold3d import Manifold, OpType
 
     outside = solid.whole if base is None else _on_base(solid.whole, base.manifold)
     voids = (*cavities, *solid.kept)
     whole = Manifold.batch_boolean([outside, *voids], OpType.Subtract)
-    part = finished(whole, crumb_mm3)
-    return Part(part, outside, voids, base, solid.name, solid.placement, solid.kept)
+    return Part(whole, outside, voids, base, solid.name, solid.placement, solid.kept)
 
 
 def _on_base(solid: Manifold, base: Manifold) -> Manifold:
@@ -81,9 +85,9 @@ def _on_base(solid: Manifold, base: Manifold) -> Manifold:
     return sealed_voids(solid + base).whole
 
 
-def finished(whole: Manifold, crumb_mm3: float) -> Manifold:
+def finished(part: Part, crumb_mm3: float) -> Part:
     """A part as it will be written: without the crumbs of its booleans, rounded to float32."""
-    return quantized(without_crumbs(whole, crumb_mm3)[0])
+    return replace(part, manifold=quantized(without_crumbs(part.manifold, crumb_mm3)[0]))
 
 
 def _above(hollowable_volume: Manifold, plane: Plane | None) -> Manifold:

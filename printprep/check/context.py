@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from printprep.drainage.trapped import Chamber, Cup, Pocket
+    from printprep.drainage.trapped import Chamber, Clearance, Cup, Pocket
     from printprep.mesh.self_intersections import SelfIntersections
     from printprep.thickness import Thin
 
@@ -99,13 +99,29 @@ class CheckContext:
         """The spaces that a ball of this diameter cannot leave."""
         from printprep.drainage.trapped import trapped
 
-        return self._kept("pockets", diameter_mm, lambda: trapped(self.part, diameter_mm))
+        return self._kept(
+            "pockets",
+            diameter_mm,
+            lambda: trapped(self.part, diameter_mm, space=self._clearance(diameter_mm)),
+        )
 
     def chambers(self, diameter_mm: float) -> tuple[Chamber, ...]:
         """The enclosed spaces with ways out, on the grid for holes of this diameter."""
         from printprep.drainage.trapped import chambers
 
-        return self._kept("chambers", diameter_mm, lambda: chambers(self.part, diameter_mm))
+        return self._kept(
+            "chambers",
+            diameter_mm,
+            lambda: chambers(self.part, diameter_mm, space=self._clearance(diameter_mm)),
+        )
+
+    def _clearance(self, diameter_mm: float) -> Clearance | None:
+        """Where a ball of this diameter may go; None for an empty part."""
+        from printprep.drainage.trapped import pour_clearance
+
+        if self.part.is_empty():
+            return None
+        return self._kept("clearance", diameter_mm, lambda: pour_clearance(self.part, diameter_mm))
 
     @cached_property
     def cups(self) -> tuple[Cup, ...]:

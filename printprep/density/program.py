@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from printprep.cavity.base import Feet, base_of, feet_of
+from printprep.cavity.base import Feet, base_of, feet_of, slab_of
 from printprep.density.fillings import Fillings
 from printprep.density.lean import LeanSolution, solve_lean
 from printprep.grid.domain import reweighed
@@ -90,6 +90,7 @@ class Program:
         ]
         self._body_of_voxel = interior.domain.body[interior.domain.free]
         self._known: dict[tuple[int, ...], tuple[NDArray[np.intp], Fillings]] = {}
+        self._slab = slab_of(solid, profile.stability.base_seat_mm)
         self._feet: Feet | None = None
 
     def choose(self, policy: BasePolicy, lean: Lean) -> Choice:
@@ -227,7 +228,7 @@ class Program:
                 moments = moments + self.moments[number]
             for piece in pieces:
                 section = section + section_at_bed(piece, first_layer)
-                moments = moments + _moments(piece - self.feet.slab)
+                moments = moments + _moments(piece - self._slab)
             yield cells, section, moments
 
     def _fillings(self, numbers: tuple[int, ...]) -> tuple[NDArray[np.intp], Fillings]:

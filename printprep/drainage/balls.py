@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.drainage.dexels import Dexels
+from printprep.grid.cell_distance import cell_distance
 from printprep.grid.grid import block_around, points_mm
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def balls_in(voxelized: VoxelizedPart, surface: Surface, radius_mm: float) -> Ba
         return Balls(radius_mm, dexels, np.zeros(0), nothing, nothing)
     block = block_around(void, 1)
     inside = void[block]
-    clearance = (np.asarray(distance_transform_edt(inside), float) - 0.5) * grid.pitch_mm
+    clearance = (cell_distance(inside).astype(np.float64) - 0.5) * grid.pitch_mm
     unsure = inside & (np.abs(clearance - radius_mm) < UNSURE_CELLS * grid.pitch_mm)
     at = np.stack(np.nonzero(unsure), axis=1) + [axis.start for axis in block]
     index = np.ravel_multi_index(tuple(at.T), grid.shape)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from printprep.cavity.carve import finished
 from printprep.drainage.channel import bored
 from printprep.drainage.drain_cavities import Drained, drain_cavities
 from printprep.drainage.driller import Hole
@@ -47,7 +46,7 @@ class Drainer:
         return float(self.bores.volume() + self.filled.volume())
 
     def drain(self, part: Part) -> tuple[Part, Drainage]:
-        """Drain the cavities of a part."""
+        """Drain the cavities of a part; the drained part is not yet finished."""
         from manifold3d import Manifold, OpType
 
         found = drain_cavities(
@@ -66,10 +65,7 @@ class Drainer:
         self.bores = _united([bored(hole.channel) for hole in found.holes])
         self.filled = _united(part.cavities) - _united(found.cavities)
         whole = Manifold.batch_boolean([part.outside, *found.cavities, self.bores], OpType.Subtract)
-        drained = replace(
-            part, manifold=finished(whole, self.profile.crumb_mm3), cavities=found.cavities
-        )
-        return drained, _drainage(found)
+        return replace(part, manifold=whole, cavities=found.cavities), _drainage(found)
 
     def _around(self, part: Part) -> VoxelizedPart:
         """The part's outside on a grid; it changes only with the base."""

@@ -16,6 +16,7 @@ from printprep.cavity.surface import isosurface
 from printprep.drainage.balls import Balls
 from printprep.drainage.dexels import Dexels, dexels_of
 from printprep.drainage.pools import LEAST_MM, SLOPE, Pools
+from printprep.grid.cell_distance import cell_distance
 from printprep.grid.distance import DepthField
 from printprep.grid.grid import cropped
 from printprep.types import Grid
@@ -121,7 +122,7 @@ class Floor:
         top = self.top_mm[dexel[tuple(nearest)]]
         z = grid.origin_mm[2] + pitch * np.arange(grid.shape[2])
         field = np.clip(top - z, -2 * pitch, 2 * pitch)
-        field = np.minimum(field, (INTO_WALL - distance_transform_edt(~cells)) * pitch)
+        field = np.minimum(field, (INTO_WALL - cell_distance(~cells)) * pitch)
         return isosurface(DepthField(grid, field.astype(np.float32)), 0.0)
 
     def _cells(self, of: Int) -> tuple[Int, Int]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.drainage.dexels import dexels_of, filled
+from printprep.grid.cell_distance import cell_distance
 from printprep.types import Grid
 
 if TYPE_CHECKING:
@@ -55,8 +56,6 @@ class VoxelizedPart:
 
 def voxelize(outside: Manifold, diameter_mm: float) -> VoxelizedPart:
     """Voxelize a part without cavities, fine enough for holes of a diameter."""
-    from scipy.ndimage import distance_transform_edt
-
     box = np.array(outside.bounding_box())
     longest = float((box[3:] - box[:3]).max())
     pitch = max(diameter_mm / CELLS_PER_DIAMETER, longest / MOST_CELLS)
@@ -65,7 +64,7 @@ def voxelize(outside: Manifold, diameter_mm: float) -> VoxelizedPart:
     counts = np.ceil((box[3:] + MARGIN_CELLS * pitch - low) / pitch).astype(int) + 1
     grid = Grid(low, pitch, (int(counts[0]), int(counts[1]), int(counts[2])))
     body = filled(dexels_of(outside, grid), grid)
-    deep = distance_transform_edt(body) - distance_transform_edt(~body)
+    deep = cell_distance(body) - cell_distance(~body)
     depth = ((deep - 0.5 * np.sign(deep)) * pitch).astype(np.float32)
     return VoxelizedPart(grid, np.zeros_like(body), depth, open_air(~body))
 

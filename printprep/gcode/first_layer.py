@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.arrays import runs
+from printprep.grid.cell_distance import cell_distance
 from printprep.stand.contact import Contact, contact_of
 
 if TYPE_CHECKING:
@@ -99,8 +100,6 @@ def _counted_area(beads: Float, length: Float, cells: int) -> float:
 
     cells : of the grid, along its longer side, at most.
     """
-    from scipy.ndimage import distance_transform_edt
-
     half = float(np.median(beads[:, 5])) / 2
     low = np.minimum(beads[:, :2], beads[:, 2:4]).min(axis=0) - half
     extent = np.maximum(beads[:, :2], beads[:, 2:4]).max(axis=0) + half - low
@@ -114,7 +113,7 @@ def _counted_area(beads: Float, length: Float, cells: int) -> float:
         points = beads[some, :2][owner] * (1 - share) + beads[some, 2:4][owner] * share
         i, j = np.floor((points - low) / pitch).astype(np.int64).T
         away[i, j] = False
-    near = distance_transform_edt(away) * pitch <= half
+    near = cell_distance(away) * pitch <= half
     return float(near.sum()) * pitch**2
 
 

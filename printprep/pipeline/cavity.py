@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from printprep.cavity.carve import cavities_of, cut, make_part
+from printprep.cavity.carve import cavities_of, cut, finished, rough_part
 from printprep.cavity.surface import isosurface
 from printprep.drainage.drainer import Drainer
 from printprep.grid.distance import DepthField
@@ -133,17 +133,18 @@ def solve_and_carve(
         drainage = None
         if drainer is not None:
             part, drainage = drainer.drain(part)
+            if objective.aims_at_lean and not holes_weighed:
+                holes_weighed = True
+                if drainer.taken_mm3 > 0:
+                    program = program.drilled(drainer.bores, hollowable_volume - drainer.filled)
+                    next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
+                    continue
+        part = finished(part, profile.crumb_mm3)
         part_stability = stability(part.manifold, profile.printer.first_layer_mm)
         if not objective.aims_at_lean:
             # The proof holds only for the program that aims at the lean
             density = replace(density, certificate=None)
             break
-        if drainer is not None and drainage and not holes_weighed:
-            holes_weighed = True
-            if drainer.taken_mm3 > 0:
-                program = program.drilled(drainer.bores, hollowable_volume - drainer.filled)
-                next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
-                continue
         tilt_deg = tilt_toward(part_stability, lean)
         out_of_reach = density.reachable_deg is not None
         if out_of_reach or tilt_deg is None or tilt_deg >= lean.angle_deg:
@@ -162,7 +163,7 @@ def carve(
     program: Program,
     density: Density,
 ) -> Part:
-    """The part with its cavity where the density is empty.
+    """The part with its cavity where the density is empty, not yet finished.
 
     program : the one for the solid without drain holes.
     """
@@ -171,7 +172,7 @@ def carve(
         hollowable_volume = hollowable_volume ^ _below_half(density, program.interior.domain)
     void = cut(hollowable_volume, program.bodies, planes)
     profile = program.profile
-    return make_part(solid, base, cavities_of(void, profile.min_feature_mm), profile.crumb_mm3)
+    return rough_part(solid, base, cavities_of(void, profile.min_feature_mm))
 
 
 def _below_half(density: Density, domain: Domain) -> Manifold:

@@ -78,6 +78,7 @@ def explore(
     ------
     UsageError, InputError, GeometryError : see :mod:`printprep.errors`.
     """
+    from printprep.cavity.carve import finished
     from printprep.paper.on_solid import paper_density
     from printprep.pipeline.cavity import carve
     from printprep.pipeline.hollowable import hollowable
@@ -115,8 +116,10 @@ def explore(
         base = program.choose(options.base, Lean(settings.stability.lean_deg)).base
         paper = paper_density(program, base)
         empty = replace(paper, planes=(None,) * len(program.bodies))
-        shell = carve(solid, None, volume.manifold, program, empty)
-        by_paper = carve(solid, base, volume.manifold, program, paper)
+        shell, by_paper = (
+            finished(carve(solid, chosen, volume.manifold, program, density), settings.crumb_mm3)
+            for chosen, density in ((None, empty), (base, paper))
+        )
         marks = (
             mark("solid", solid.manifold),
             mark("shell alone", shell.manifold),

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.grid.cell_distance import cell_distance
 from printprep.grid.grid import cropped, points_mm
 from printprep.mesh.aabb_tree import SurfaceTree
 from printprep.mesh.measure import arrays
@@ -115,11 +116,9 @@ class Clearance:
 
 def space_around(part: Manifold, pitch_mm: float, margin_mm: float) -> Clearance:
     """Measure the clearance in a part's bounding box and a margin around it."""
-    from scipy.ndimage import distance_transform_edt
-
     grid, empty = empty_cells(part, pitch_mm, margin_mm, margin_mm)
-    cells = distance_transform_edt(empty).astype(np.float32)
-    clearance: Float32 = np.maximum(cells - np.float32(0.5), 0) * pitch_mm
+    cells = np.maximum(cell_distance(empty) - np.float32(0.5), 0)
+    clearance: Float32 = cells * np.float32(pitch_mm)
     return Clearance(grid, empty, clearance, SurfaceTree(*arrays(part)))
 
 

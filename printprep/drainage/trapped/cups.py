@@ -14,6 +14,7 @@ import numpy as np
 
 from printprep.drainage.trapped.clearance import empty_cells
 from printprep.drainage.trapped.flood import basins
+from printprep.grid.cell_distance import cell_distance
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -105,11 +106,9 @@ def _innermost(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
 
     i, j : (n,) indices of the set's cells.
     """
-    from scipy.ndimage import distance_transform_edt
-
     low = np.array([i.min(), j.min()])
     mask = np.zeros((int(np.ptp(i)) + 3, int(np.ptp(j)) + 3), dtype=bool)
     mask[i - low[0] + 1, j - low[1] + 1] = True
-    depth = distance_transform_edt(mask)
+    depth = cell_distance(mask)
     x, y = np.unravel_index(int(depth.argmax()), mask.shape)
     return int(x + low[0] - 1), int(y + low[1] - 1)

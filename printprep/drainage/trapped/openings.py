@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Bool
+    from printprep.drainage.trapped.clearance import Clearance
 
 # Air passes where a ball of this share of a hole's width does.
 PASSES = 0.5
@@ -37,14 +38,17 @@ class Chamber:
     at_mm: tuple[float, float, float]
 
 
-def chambers(part: Manifold, diameter_mm: float) -> tuple[Chamber, ...]:
+def chambers(
+    part: Manifold, diameter_mm: float, *, space: Clearance | None = None
+) -> tuple[Chamber, ...]:
     """The enclosed spaces of a part with at least one way out, the largest first.
 
-    diameter_mm : of the drain holes, which decides how fine the grid is.
+    diameter_mm : of the drain holes, which decides how fine the grid is;  space : the part's
+    ``pour_clearance`` for it, where it is at hand.
     """
     if part.is_empty():
         return ()
-    space = pour_clearance(part, diameter_mm)
+    space = pour_clearance(part, diameter_mm) if space is None else space
     if space.empty.all():  # thinner than a cell everywhere
         return ()
     radius = PASSES * diameter_mm / 2

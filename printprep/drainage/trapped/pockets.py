@@ -88,6 +88,7 @@ def trapped(
     cavities: Sequence[Manifold] = (),
     pitch_mm: float | None = None,
     least_mm3: float | None = None,
+    space: Clearance | None = None,
 ) -> tuple[Pocket, ...]:
     """Find the pockets of a part that drains through holes of a diameter, standing as it prints.
 
@@ -98,6 +99,7 @@ def trapped(
     cavities : the part's cavities without holes, to tell which one a pocket lies in.
     pitch_mm : of the grid; by default a sixth of the diameter, or what 16 million cells allow.
     least_mm3 : smaller pockets do not count; by default the ball's own volume.
+    space : the part's ``pour_clearance`` for the diameter, where it is at hand.
 
     Returns
     -------
@@ -106,7 +108,7 @@ def trapped(
     if part.is_empty():
         return ()
     least = np.pi / 6 * diameter_mm**3 if least_mm3 is None else least_mm3
-    space = pour_clearance(part, diameter_mm, pitch_mm)
+    space = pour_clearance(part, diameter_mm, pitch_mm) if space is None else space
     if space.empty.all():  # thinner than a cell everywhere
         return ()
     fits = space.ball_fits(diameter_mm / 2)
