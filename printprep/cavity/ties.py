@@ -17,6 +17,9 @@ from printprep.mesh.weld import compact
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
+# A tie is so much wider than its island on every side.
+BESIDE_MM = 0.1
+ARC_SEGMENTS = 16
 # The outline of a tie may move this much.
 OUTLINE_MM = 0.02
 
@@ -24,9 +27,10 @@ OUTLINE_MM = 0.02
 def tied(hollowable_volume: Manifold) -> Manifold:
     """The volume without pedestals that reach from its floor up into every island.
 
-    A pedestal has the outline of its island, seen from above: nothing overhangs beside it.
+    A pedestal has the outline of its island, seen from above, and a little more: nothing overhangs
+    beside it, and its sides lie on none of the island's.
     """
-    from manifold3d import CrossSection, FillRule, Manifold, OpType
+    from manifold3d import CrossSection, FillRule, JoinType, Manifold, OpType
 
     vertices, faces = arrays(hollowable_volume)
     figures = shell_figures(vertices, faces)
@@ -37,7 +41,8 @@ def tied(hollowable_volume: Manifold) -> Manifold:
         shadow = CrossSection(shell.project().to_polygons(), FillRule.Positive)
         floor = float(figures.low_mm[figures.volume_mm3 > 0, 2].min()) - 1.0
         middle = float((figures.low_mm[number, 2] + figures.high_mm[number, 2]) / 2)
-        pedestal = shadow.simplify(OUTLINE_MM).extrude(middle - floor)
+        outline = shadow.offset(BESIDE_MM, JoinType.Round, 2.0, ARC_SEGMENTS)
+        pedestal = outline.simplify(OUTLINE_MM).extrude(middle - floor)
         pedestals.append(pedestal.translate((0.0, 0.0, floor)))
     if not pedestals:
         return hollowable_volume

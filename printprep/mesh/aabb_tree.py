@@ -38,7 +38,9 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
     # A copy: the caller may move his corners afterwards, and the tree is still that of this mesh.
     found = _KEPT.pop(key, None) or SurfaceTree(vertices.copy(), faces.copy())
     _KEPT[key] = found  # the last used are at the end
-    while len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES:
+    while len(_KEPT) > _MOST_TREES or (
+        len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES
+    ):
         del _KEPT[next(iter(_KEPT))]
     return found
 
@@ -179,6 +181,8 @@ def _bisected(vertices: Float, faces: Int) -> _Pieces:
         some = np.concatenate([some, np.arange(len(every) - len(some), len(every))])
 
 
-# Trees are kept as long as they have no more faces together; one takes 172 bytes for libigl's tree.
+# So many trees are kept, as long as they have no more faces together; one takes 172 bytes for
+# libigl's tree.  Embree crashes where some thousand scenes are held.
+_MOST_TREES = 8
 _MOST_FACES = 5_200_000
 _KEPT: dict[bytes, SurfaceTree] = {}

@@ -138,7 +138,9 @@ def solve_and_carve(
                 if drainer.taken_mm3 > 0:
                     program = program.drilled(drainer.bores, hollowable_volume - drainer.filled)
                     next_density = objective.on_solid(program, choice, lean, margin_deg, solver)
-                    continue
+                    if next_density.planes is None or next_density.planes != density.planes:
+                        continue
+                    density = next_density  # the same cavities: their holes stay
         part = finished(part, profile.crumb_mm3)
         part_stability = stability(part.manifold, profile.printer.first_layer_mm)
         if not objective.aims_at_lean:

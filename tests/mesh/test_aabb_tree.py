@@ -120,3 +120,11 @@ def test_many_long_slivers_stay_whole() -> None:
     tree = SurfaceTree(vertices, faces)
     assert len(tree._pieces.faces) <= aabb_tree.MOST_PIECES * len(faces) + aabb_tree.FEW_FACES
     assert tree.nearest(np.array([[0.0, 0.0, 50.0]]))[0] == pytest.approx(10, rel=1e-6)
+
+
+def test_few_trees_are_kept_however_small() -> None:
+    # Embree crashes where some thousand scenes are held: a batch ended so
+    faces = np.array([[0, 1, 2]])
+    for number in range(3 * aabb_tree._MOST_TREES):
+        tree_of(np.eye(3) + number, faces)
+    assert len(aabb_tree._KEPT) == aabb_tree._MOST_TREES
