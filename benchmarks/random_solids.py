@@ -40,6 +40,9 @@ def main() -> int:
             raise _OutOfTime
         tried += 1
         broken = judge(recipe, twice=tried % 5 == 0)
+        if tried % 100 == 0:
+            minutes = (time.monotonic() - started) / 60
+            print(f"{tried} solids in {minutes:.1f} min", file=sys.stderr, flush=True)
         if broken:
             kind = broken[0].split(":")[0]
             print(f"{tried}: {broken}\n{recipe.to_json()}", flush=True)
