@@ -5,9 +5,11 @@ The byte fuzz of the tests and the harness for atheris share this list.
 
 from __future__ import annotations
 
+import functools
 import io
 import json
 import struct
+import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -23,17 +25,20 @@ class Reader:
     """One reader.
 
     suffix : of the file;  read : reads it;  seeds : contents that it takes.
+    pack : makes the file of a content: in an archive every changed byte would only break the
+    checksum.
     """
 
     suffix: str
     read: Callable[[Path], object]
     seeds: tuple[bytes, ...]
+    pack: Callable[[bytes], bytes] = bytes
 
 
 def refuses_or_reads(reader: Reader, content: bytes, folder: Path) -> bool:
     """Whether a reader takes a content.  Anything but a refusal of ours is raised."""
     path = folder / f"file{reader.suffix}"
-    path.write_bytes(content)
+    path.write_bytes(reader.pack(content))
     try:
         reader.read(path)
     except PrintprepError as error:
@@ -179,23 +184,32 @@ def _model_xml() -> bytes:
     ).encode()
 
 
+MODEL, FIGURES = "3D/3dmodel.model", "Metadata/printprep.json"
+PRUSA, BAMBU = "Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"
+_PRUSA = (
+    b'<config><object id="1"><metadata key="name" value="a"/><volume firstid="0" lastid="3">'
+    b'<metadata key="volume_type" value="ModelPart"/></volume></object></config>'
+)
+_BAMBU = (
+    b'<config><object id="2"><part id="1" subtype="normal_part"/></object><plate><metadata '
+    b'key="plater_id" value="1"/><model_instance><metadata key="object_id" value="2"/><metadata'
+    b' key="instance_id" value="0"/></model_instance></plate></config>'
+)
+
+
 def _projects() -> tuple[bytes, ...]:
-    prusa = (
-        b'<config><object id="1"><metadata key="name" value="a"/><volume firstid="0" lastid="3">'
-        b'<metadata key="volume_type" value="ModelPart"/></volume></object></config>'
-    )
-    bambu = (
-        b'<config><object id="2"><part id="1" subtype="normal_part"/></object><plate><metadata '
-        b'key="plater_id" value="1"/><model_instance><metadata key="object_id" value="2"/><metadata'
-        b' key="instance_id" value="0"/></model_instance></plate></config>'
-    )
-    model = {"3D/3dmodel.model": _model_xml()}
+    model = {MODEL: _model_xml()}
     return (
         _zip(model),
-        _zip({**model, "Metadata/Slic3r_PE_model.config": prusa}),
-        _zip({**model, "Metadata/model_settings.config": bambu}),
-        _zip({**model, "Metadata/printprep.json": b'{"format": 1}'}, zipfile.ZIP_DEFLATED),
+        _zip({**model, PRUSA: _PRUSA}),
+        _zip({**model, BAMBU: _BAMBU}),
+        _zip({**model, FIGURES: b'{"format": 1}'}, zipfile.ZIP_DEFLATED),
     )
+
+
+def _within(name: str) -> Callable[[bytes], bytes]:
+    """Makes a 3MF of the content of one of its parts."""
+    return lambda content: _zip({MODEL: _model_xml(), name: content})
 
 
 def _npy() -> bytes:
@@ -216,6 +230,37 @@ def _pt() -> bytes:
     return buffer.getvalue()
 
 
+@functools.cache
+def _written() -> dict[str, bytes]:
+    """The parts of a 3MF that printprep writes."""
+    import trimesh
+
+    from printprep import hollow
+
+    made = hollow(trimesh.creation.box((6, 6, 8)), resolution=8)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.3mf"
+        made.write(path)
+        with zipfile.ZipFile(path) as archive:
+            return {name: archive.read(name) for name in archive.namelist()}
+
+
+def _with_figures(figures: bytes) -> bytes:
+    return _zip({**_written(), FIGURES: figures})
+
+
+def _pickled() -> bytes:
+    with zipfile.ZipFile(io.BytesIO(_pt())) as archive:
+        return archive.read("archive/data.pkl")
+
+
+def _pt_of(pickled: bytes) -> bytes:
+    """The .pt file with other pickled data in it."""
+    with zipfile.ZipFile(io.BytesIO(_pt())) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    return _zip({**parts, "archive/data.pkl": pickled})
+
+
 def _toml() -> bytes:
     from printprep.profiles import profile_source
 
@@ -232,9 +277,14 @@ READERS: Mapping[str, Callable[[], Reader]] = {
     "gltf": lambda: Reader(".gltf", _mesh, (_gltf(False),)),
     "3mf": lambda: Reader(".3mf", _mesh, _projects()),
     "part": lambda: Reader(".3mf", _part, _projects()),
+    "model": lambda: Reader(".3mf", _mesh, (_model_xml(),), _within(MODEL)),
+    "prusa": lambda: Reader(".3mf", _mesh, (_PRUSA,), _within(PRUSA)),
+    "bambu": lambda: Reader(".3mf", _mesh, (_BAMBU,), _within(BAMBU)),
+    "figures": lambda: Reader(".3mf", _part, (_written()[FIGURES],), _with_figures),
     "npz": lambda: Reader(".npz", _voxels, (_npz(),)),
     "npy": lambda: Reader(".npy", _voxels, (_npy(),)),
     "pt": lambda: Reader(".pt", _voxels, (_pt(),)),
+    "pickle": lambda: Reader(".pt", _voxels, (_pickled(),), _pt_of),
     "toml": lambda: Reader(".toml", _profile, (_toml(),)),
     "csv": lambda: Reader(".csv", _table, (b"file,size,lean,set\nfile.csv,80,15,wall_mm=2\n",)),
 }
