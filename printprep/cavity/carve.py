@@ -11,6 +11,7 @@ import numpy as np
 
 from printprep.grid.balls import deepest_points
 from printprep.grid.distance import Surface
+from printprep.mesh.measure import bodies
 from printprep.mesh.quantize import quantized
 from printprep.mesh.sealed_voids import sealed_voids
 from printprep.mesh.shell_figures import pieces, without_crumbs
@@ -87,7 +88,19 @@ def _on_base(solid: Manifold, base: Manifold) -> Manifold:
 
 def finished(part: Part, crumb_mm3: float) -> Part:
     """A part as it will be written: without the crumbs of its booleans, rounded to float32."""
-    return replace(part, manifold=quantized(without_crumbs(part.manifold, crumb_mm3)[0]))
+    rounded = quantized(without_crumbs(part.manifold, crumb_mm3)[0])
+    return replace(part, manifold=_touching_joined(rounded))
+
+
+def _touching_joined(part: Manifold) -> Manifold:
+    """The part with bodies that touch once they are rounded as one, as programs read them."""
+    from manifold3d import Manifold, OpType
+
+    apart = bodies(part)
+    if len(apart) == 1:
+        return part
+    joined = Manifold.batch_boolean(list(apart), OpType.Add)
+    return quantized(joined) if len(bodies(joined)) < len(apart) else part
 
 
 def _above(hollowable_volume: Manifold, plane: Plane | None) -> Manifold:
