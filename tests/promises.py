@@ -31,6 +31,7 @@ WALL_MM = 0.05  # the promise
 OFF_MM = 0.02
 LEAN_DEG = 0.3  # sections by another program
 SAMPLES = 4000
+SEVERITIES = ("none", "info", "warning", "error")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,9 +69,12 @@ def broken_promises(result: HollowResult, outside: Manifold, *, again: bytes | N
         written = judges.Mesh(np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64))
         broken = [f"2: lib3mf warns: {text}" for text in warnings]
         checked = check(path, profile=result.profile, lean=result.lean)
-    said = {(item.rule, item.severity) for item in result.findings}
-    new = {(item.rule, item.severity) for item in checked.findings} - said
-    broken += [f"check says what hollow did not: {rule}, {kind}" for rule, kind in sorted(new)]
+    said = {item.rule: item.severity for item in reversed(result.findings)}
+    broken += [
+        f"check says what hollow did not: {item.rule}, {item.severity}"
+        for item in checked.findings
+        if SEVERITIES.index(item.severity) > SEVERITIES.index(said.get(item.rule, "none"))
+    ]
     judged = Judged(result, outside, written)
     for promise in (_outside, _manifold, _wall, _stands, _certificate, _inside):
         broken += promise(judged)
@@ -137,11 +141,12 @@ def _outside(judged: Judged) -> list[str]:
         points[free], judged.written.vertices, judged.written.faces
     )
     distance = np.sqrt(squared)
-    far = distance > OFF_MM
+    allowed_mm = OFF_MM + judged.result.solid.repair.moved_max_mm  # which the report tells
+    far = distance > allowed_mm
     normals = model.face_normals[faces][free]
     distance[far] *= _bounds(judged.outside, points[free][far], normals[far])
     off = float(distance.max(initial=0.0))
-    if off > OFF_MM:
+    if off > allowed_mm:
         broken.append(f"1: the model's surface lies {off:.3g} mm off the part")
     # Just under the model's surface there is material.
     under = points[free] - 0.3 * judged.result.profile.wall_mm * normals

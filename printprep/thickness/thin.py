@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.mesh.aabb_tree import tree_of
-from printprep.mesh.measure import arrays
+from printprep.mesh.quantize import quantized_arrays
 from printprep.thickness.local import LocalThickness, local_thickness, perpendiculars
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def thin_places(part: Manifold, limit_mm: float) -> Thin:
     """Places where material between nearly parallel sides is thinner than a limit."""
     found = _mapped(part, limit_mm, gaps=False)
     middle, across, thick = _below(found, limit_mm)
-    surface, wide = tree_of(*arrays(part)), np.full(len(middle), np.inf)
+    surface, wide = tree_of(*quantized_arrays(part)), np.full(len(middle), np.inf)
     first, second = perpendiculars(across) if len(across) else (across, across)
     for turn in np.arange(_CHORDS) * (np.pi / _CHORDS):
         along = np.cos(turn) * first + np.sin(turn) * second
@@ -95,7 +95,7 @@ def gap_places(part: Manifold, limit_mm: float) -> Thin:
 
 def _mapped(part: Manifold, limit_mm: float, *, gaps: bool) -> LocalThickness:
     return local_thickness(
-        *arrays(part),
+        *quantized_arrays(part),  # in one order, whatever made the part: the same points
         samples=int(np.clip(part.surface_area(), _FEWEST, _MOST)),
         at_most_mm=1.01 * limit_mm,
         gaps=gaps,
