@@ -79,9 +79,14 @@ class CheckContext:
     def self_intersections(self) -> SelfIntersections | None:
         """Where the triangles of the file intersect each other, None if they do not."""
         from printprep.mesh.self_intersections import self_intersections
+        from printprep.mesh.weld import in_order, unique_rows
 
-        found = None if self.raw is None else self_intersections(self.raw.vertices, self.raw.faces)
-        return found if found is not None and len(found.edge) else None
+        if self.raw is None:
+            return None
+        # In one order, whoever wrote the file: what barely touches is judged alike
+        vertices, index = unique_rows(self.raw.vertices)
+        found = self_intersections(vertices, in_order(index[self.raw.faces]))
+        return found if len(found.edge) else None
 
     def thin_below(self, limit_mm: float) -> Thin:
         """Where the material is thinner than a limit."""
