@@ -90,7 +90,8 @@ def _may_stand(downs: Float, vertices: Float, centre: Float) -> Bool:
         some = downs[start : start + _AT_ONCE]
         heights = some @ vertices.T
         top = heights.max(axis=1)
-        touching = heights > (top - touch_mm)[:, None]
+        # More than touches, so that rounding decides nothing here
+        touching = heights > (top - 2 * touch_mm)[:, None]
         under = centre + (top - some @ centre)[:, None] * some
         within = np.ones(len(some), dtype=bool)
         for axis, at in enumerate(vertices.T):

@@ -139,9 +139,11 @@ class TestPlaces:
         assert on_fin.thinnest[0] == pytest.approx(0.8, rel=0.01)
         assert (on_fin.wide_mm > 5).mean() > 0.9
         assert on_rod.total_mm2 == pytest.approx(math.pi * 0.8 * 10, rel=0.2)
-        # Near its end a chord may be cut short
-        assert np.isclose(on_rod.wide_mm, 0.8, rtol=0.02).mean() > 0.95
-        assert on_rod.wide_mm == pytest.approx(np.full(len(on_rod), 0.8), rel=0.1)
+        # At its end a ball touches the rim, and its middle lies beside the axis
+        whole = on_rod.middle[:, 2] < 29.4
+        assert whole.sum() > 0.9 * len(on_rod)
+        assert on_rod.wide_mm[whole] == pytest.approx(np.full(whole.sum(), 0.8), rel=0.02)
+        assert (on_rod.wide_mm < 0.82).all()
 
     def test_the_limit_from_both_sides(self):
         plate = Manifold.cube((20, 20, 1.2))
