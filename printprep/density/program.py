@@ -194,7 +194,7 @@ class Program:
     def _heavier(self, base: Base, best: Choice) -> bool:
         """Whether the bare shell with this base, and so any wider base, outweighs the best."""
         shell = sum(moments[0] for moments in self.moments) - self.interior.moments[0].sum()
-        return bool(shell + (base.manifold - self.feet.slab).volume() > best.volume_mm3)
+        return bool(shell + (base.manifold - self._slab).volume() > best.volume_mm3)
 
     def _around(self, growth_mm: float) -> Iterator[float]:
         for growth in (growth_mm - GROWTH_STEP_MM / 2, growth_mm + GROWTH_STEP_MM / 2):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # A triangle is long where an edge is longer than the mesh's longest side over this.
 LONG_SHARE = 10
-# Pieces of long triangles, beside the few that every mesh may have, to one triangle.
+# Halving stops before a mesh has so many times its triangles, and so many more.
 MOST_PIECES = 2
 FEW_FACES = 20_000
 

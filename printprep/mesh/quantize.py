@@ -97,6 +97,7 @@ _LAST: deque[tuple[Manifold, tuple[Float, Int]]] = deque(maxlen=2)
 
 
 def _quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
+    """Vertices (n, 3) mm and faces (m, 3), as :func:`quantized_arrays` gives them, anew."""
     points, corners = arrays(manifold)
     vertices, index = unique_rows(rounded(points))
     faces = drop_collapsed(index[corners])
