@@ -31,6 +31,7 @@ IDLE_S = 30.0  # a child whose processes all use no processor for so long hangs 
 _POLL_S = 0.02
 _LOOK_S = 1.0  # how often it is looked whether a child is at work
 _READ_BYTES = 1 << 16
+_MOST_LOOKS = 16  # for what a child left behind
 _PIPE_END_S = 1.0  # how long a stream may stay open after all known processes ended
 
 
@@ -164,17 +165,27 @@ def _spent(child: int) -> int | None:
 
 
 def end_marked(variable: str, token: str) -> None:
-    """End all processes that have a variable with this value in their environment (Linux only)."""
+    """End all processes that have a variable with this value in their environment (Linux only).
+
+    One look sees no process that began after it, and an empty environment of one that is about to
+    become another program.  So it looks again where one has gone meanwhile (its child may live on)
+    or does not show its environment.
+    """
     if not sys.platform.startswith("linux"):
         return
     mark = f"{variable}={token}".encode()
-    for _ in range(8):  # those that start others meanwhile are found in the next round
-        found = [process for process in _processes() if mark in _environment(process)]
-        if not found:
+    for _ in range(_MOST_LOOKS):
+        clear = True
+        for process in _processes():
+            environment = _environment(process)
+            if environment is None:
+                clear = False
+            elif mark in environment:
+                clear = False
+                with contextlib.suppress(ProcessLookupError, PermissionError):
+                    os.kill(process, signal.SIGKILL)
+        if clear:
             return
-        for process in found:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(process, signal.SIGKILL)
         time.sleep(_POLL_S)
 
 
@@ -187,8 +198,16 @@ def _processes() -> list[int]:
     ]
 
 
-def _environment(process: int) -> list[bytes]:
-    """The environment that a process started with; empty where it is another user's, or gone."""
+def _environment(process: int) -> list[bytes] | None:
+    """The environment that a process started with; empty where it is another user's or ended.
+
+    None where the process has gone, or runs a program and shows none.
+    """
+    folder = Path(f"/proc/{process}")
     with contextlib.suppress(OSError):
-        return Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
-    return []
+        if shown := (folder / "environ").read_bytes():
+            return shown.split(b"\0")
+        (folder / "exe").readlink()
+        return None
+    # Another user's, the kernel's own, and one that has ended but is not yet waited for.
+    return [] if folder.exists() else None

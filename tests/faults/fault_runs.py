@@ -53,7 +53,7 @@ def done(
 def left(mark: str) -> list[int]:
     """The processes of a run that still live."""
     own = f"{MARK}={mark}".encode()
-    return [process for process in _processes() if own in _environment(process)]
+    return [process for process in _processes() if own in (_environment(process) or [])]
 
 
 def ended(mark: str, within_s: float) -> bool:

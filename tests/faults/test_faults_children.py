@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import secrets
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -77,8 +81,39 @@ def test_a_slicer_that_fails_is_told_and_ended(
     assert all(letter.isprintable() or letter == "\n" for letter in err)
     assert list((tmp_path / "scratch").iterdir()) == []
     mark = f"PRINTPREP_TEST_SLICER={tmp_path}".encode()
-    living = [each for each in children._processes() if mark in children._environment(each)]
-    assert living == []
+    assert marked(mark) == []
+
+
+def marked(mark: bytes) -> list[int]:
+    looked = ((each, children._environment(each)) for each in children._processes())
+    return [each for each, environment in looked if environment and mark in environment]
+
+
+@on_linux
+@pytest.mark.parametrize("hidden", ["before its environment shows", "behind one that has gone"])
+def test_what_one_look_does_not_show_is_ended(monkeypatch: pytest.MonkeyPatch, hidden: str):
+    mark = secrets.token_hex(8)
+    child = subprocess.Popen(["sleep", "60"], env={**os.environ, "PRINTPREP_TEST": mark})
+    processes, environment = children._processes, children._environment
+    looks = []
+
+    def processes_of_a_look() -> list[int]:
+        looks.append(len(looks))
+        newborn = hidden == "behind one that has gone" and len(looks) == 1
+        return [1 << 30] if newborn else processes()
+
+    def environment_of(process: int) -> list[bytes] | None:
+        starts = hidden == "before its environment shows" and len(looks) == 1
+        return None if process == child.pid and starts else environment(process)
+
+    monkeypatch.setattr(children, "_processes", processes_of_a_look)
+    monkeypatch.setattr(children, "_environment", environment_of)
+    try:
+        children.end_marked("PRINTPREP_TEST", mark)
+        assert child.wait(5.0) == -signal.SIGKILL
+    finally:
+        child.kill()
+        child.wait()
 
 
 def python(code: str) -> list[str]:
@@ -103,16 +138,26 @@ def test_limits_of_time_and_output(monkeypatch: pytest.MonkeyPatch):
     assert time.monotonic() - began < 5.0
 
 
-@on_linux
-def test_one_that_waits_hangs_and_one_that_works_does_not(monkeypatch: pytest.MonkeyPatch):
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "IDLE_S", 1.2)
     monkeypatch.setattr(children, "_LOOK_S", 0.2)
+
+
+@on_linux
+@pytest.mark.usefixtures("impatient")
+def test_one_that_waits_hangs():
     with pytest.raises(HungError, match="did nothing"):
         run(["sleep", "60"], 50.0)
+
+
+@on_linux
+@pytest.mark.usefixtures("impatient")
+@pytest.mark.parametrize("launcher", ["", "setsid --wait "])  # one starts a session of its own
+def test_one_that_works_does_not_hang(launcher: str):
     busy = "import time\nend = time.time() + 2\nwhile time.time() < end: pass"
-    for launcher in ("", "setsid --wait "):  # a launcher may start a session of its own
-        command = ["sh", "-c", f'{launcher}{sys.executable} -c "$0"', busy]
-        assert run(command, 50.0).exit_code == 0
+    command = ["sh", "-c", f'{launcher}{sys.executable} -c "$0"', busy]
+    assert run(command, 50.0).exit_code == 0
 
 
 def test_a_child_that_leaves_its_pipe_to_another_is_not_waited_for():
