@@ -15,7 +15,7 @@ import igl
 import judges
 import numpy as np
 import trimesh
-from manifold3d import CrossSection, Manifold
+from manifold3d import CrossSection, Manifold, OpType
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
@@ -124,7 +124,9 @@ def _outside(judged: Judged) -> list[str]:
     """1: the model's outside is the part's, but for a base and drain holes."""
     part = judged.result.part
     base = Manifold() if part.base is None else part.base.manifold
-    beyond = (part.manifold - (judged.outside + base)).volume()
+    # What a base closes off from the air is filled.
+    shells = [shell for shell in (judged.outside + base).decompose() if shell.volume() > 0]
+    beyond = (part.manifold - Manifold.batch_boolean(shells, OpType.Add)).volume()
     slack = 1e-3 * judged.outside.surface_area()
     broken = []
     if beyond > slack:

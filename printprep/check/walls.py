@@ -8,6 +8,7 @@ import numpy as np
 
 from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, gap_mm
+from printprep.mesh.quantize import quantized_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +51,7 @@ def wall_min_mm(part: Walled) -> Wall | None:
     if not part.cavities:
         return None
     cavity = united(part.cavities)
-    outer, inner = arrays(part.outside), arrays(cavity)
+    outer, inner = quantized_arrays(part.outside), arrays(cavity)
     outward, inward = _nearest(inner, outer), _nearest(outer, inner)
     sampled, middle = min(outward, inward, key=lambda nearest: nearest[0])
     exact = gap_mm(part.outside, cavity, sampled * (1 + 1e-9) + 1e-9)

@@ -12,6 +12,7 @@ import numpy as np
 from printprep.errors import PrintprepError
 from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import arrays, distance_to_mesh_mm
+from printprep.mesh.quantize import quantized_arrays
 from printprep.mesh.shell_figures import joined, shell_figures
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ def _check_volume(part: Part, drains: tuple[Drain, ...]) -> None:
 
 
 def _check_surface(part: Part, drains: tuple[Drain, ...]) -> None:
-    outside, written = tree_of(*arrays(part.outside)), tree_of(*arrays(part.manifold))
+    # In the form in which the rules ask for them: their search trees are built once.
+    outside, written = (tree_of(*quantized_arrays(each)) for each in (part.outside, part.manifold))
     points = _some(outside.vertices)
     _refuse_far(part, points, written.nearest(points)[0], drains, "does not reach")
     points = _some(written.vertices)

@@ -20,7 +20,7 @@ from printprep.cavity.surface import isosurface, lower_convex
 from printprep.errors import GeometryError
 from printprep.grid.distance import DepthField, Surface
 from printprep.mesh.measure import arrays
-from printprep.mesh.quantize import quantized
+from printprep.mesh.quantize import quantized, quantized_arrays
 from printprep.mesh.weld import directed_edges, opposite_edges
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def _around_cavities(field: DepthField, wall_mm: float, level_mm: float) -> Dept
 
 def depth_mm(blocker: Manifold, outside: Manifold) -> tuple[float, tuple[float, float, float]]:
     """Least depth of a blocker's surface below the outside of a part, and where (x, y, z)."""
-    least_mm, at = _least_depth(blocker, Surface.of(outside))
+    least_mm, at = _least_depth(blocker, Surface(*quantized_arrays(outside)))
     x, y, z = at.tolist()
     return least_mm, (x, y, z)
 
