@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 Float = NDArray[np.float64]
 
 WALL_MM = 0.05  # the promise
+DRILL_STEP_MM = 0.1  # between the points at which a hole is measured
 OFF_MM = 0.02
 LEAN_DEG = 0.3  # sections by another program
 SAMPLES = 4000
@@ -190,7 +191,7 @@ def _manifold(judged: Judged) -> list[str]:
 
 
 def _wall(judged: Judged) -> list[str]:
-    """3: what is not on the outside is deeper than the wall."""
+    """3: what is not on the outside is deeper than the wall, and along a drill than about half of it."""
     part, profile = judged.result.part, judged.result.profile
     surface = arrays(part.outside)
     points, _ = trimesh.sample.sample_surface(judged.mesh, SAMPLES, seed=0)
@@ -198,11 +199,27 @@ def _wall(judged: Judged) -> list[str]:
     points = points[~_beside_drains(judged, points) & ~_in_own_voids(judged, points)]
     squared, _, _ = igl.point_mesh_squared_distance(points, *surface)
     distance = np.sqrt(squared)
-    inner = distance[distance > OFF_MM]
-    least = float(inner.min(initial=np.inf))
-    if least < profile.wall_mm - WALL_MM:
-        return [f"3: a wall is {least:.3f} mm, not {profile.wall_mm:g}"]
+    drilled = _along_drills(judged, points)
+    for limit_mm, which in (
+        (profile.wall_mm - WALL_MM, ~drilled),
+        (profile.wall_mm / 2 - DRILL_STEP_MM - WALL_MM, drilled),
+    ):
+        least = float(distance[which & (distance > OFF_MM)].min(initial=np.inf))
+        if least < limit_mm:
+            return [f"3: a wall is {least:.3f} mm, not {limit_mm:.3f}"]
     return []
+
+
+def _along_drills(judged: Judged, points: Float) -> NDArray[np.bool_]:
+    """Which points may lie on the side of a drain hole, anywhere on its way in."""
+    along_one = np.zeros(len(points), dtype=bool)
+    drainage = judged.result.drainage
+    for drain in () if drainage is None else drainage.drains:
+        away = points - np.array(drain.centre_mm)
+        along = away @ np.array(drain.axis)
+        across = np.linalg.norm(away - along[:, None] * np.array(drain.axis), axis=1)
+        along_one |= (across < 0.51 * drain.diameter_mm) & (along < 0)
+    return along_one
 
 
 def _stands(judged: Judged) -> list[str]:
