@@ -191,7 +191,7 @@ def _manifold(judged: Judged) -> list[str]:
 
 
 def _wall(judged: Judged) -> list[str]:
-    """3: what is not on the outside is deeper than the wall, and along a drill than about half of it."""
+    """3: what is not on the outside is deeper than the wall, along a drill than half of it."""
     part, profile = judged.result.part, judged.result.profile
     surface = arrays(part.outside)
     points, _ = trimesh.sample.sample_surface(judged.mesh, SAMPLES, seed=0)

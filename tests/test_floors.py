@@ -36,7 +36,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.profile_import", "printprep.profile_new"),
     ("printprep.threemf", "printprep.profiles", "printprep.bgcode"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
-    ("printprep.input_file", "printprep.profile_folders"),
+    ("printprep.input_file", "printprep.mislabelled", "printprep.profile_folders"),
     (
         "printprep.arrays",
         "printprep.children",

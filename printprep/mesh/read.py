@@ -21,6 +21,7 @@ from printprep.mesh.obj import read_obj
 from printprep.mesh.ply import read_ply
 from printprep.mesh.stl import read_stl
 from printprep.mesh.weld import welded
+from printprep.mislabelled import refuse_mislabelled
 from printprep.types import Paint, ReadNote
 from printprep.wording import counted
 
@@ -104,6 +105,7 @@ def read_mesh(path: Path, units: str | None = None, *, choice: Choice = ALL) -> 
         return _read_3mf(path, choice)
     refuse_parts(choice, what)
     data = read_plain_file(path)
+    refuse_mislabelled(data, suffix, what)
     vertices: Float
     faces: Int
     if suffix == ".stl":

@@ -22,6 +22,7 @@ from urllib.parse import unquote
 
 from printprep.errors import InputError
 from printprep.input_file import read_plain_file
+from printprep.mislabelled import refuse_mislabelled
 from printprep.wording import printable, shortened
 
 # 512 MiB of XML hold five million triangles, as many as are read.  Real meshes deflate by a factor
@@ -57,6 +58,7 @@ class Archive:
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except (*_DAMAGE, ValueError, struct.error) as error:
+            refuse_mislabelled(content, ".3mf", self.name)
             raise InputError(
                 f"{self.name} cannot be opened as a 3MF file: {shortened(str(error), 160)}.",
                 "A 3MF is a zip archive: download or export it again.",

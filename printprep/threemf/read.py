@@ -267,7 +267,8 @@ class _Build:
         self._placed += 1
         if depth > _DEPTH_MAX or self._placed > _PLACED_MAX:
             raise InputError(
-                f"{self._archive.name} has components that contain themselves, or too many of them."
+                f"{self._archive.name} has components that contain themselves, or too many.",
+                "Export the model again.",
             )
         found = self._object(part, here.object_id)
         # BambuStudio and older versions of OrcaSlicer save what is not material as type "other".
