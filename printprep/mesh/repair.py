@@ -1,8 +1,9 @@
 """Repairs triangles into a solid: a ladder of methods that stops at the first one that works.
 
-Rungs, gentlest first: the mesh as it is; its shells turned and united (no vertex moves); MeshLab's
-filters; a new surface by winding number.  A rung works where it gives a manifold without error, of
-positive volume, that encloses the same space as the model (reference.py).
+Cracks are sewn first.  Rungs, gentlest first: the mesh as it is; its shells turned and united (no
+vertex moves); MeshLab's filters; a new surface by winding number.  A rung works where it gives a
+manifold without error, of positive volume, that encloses the same space as the model
+(reference.py).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from printprep.mesh.orient import right_side_out
 from printprep.mesh.reference import Reference
 from printprep.mesh.remesh import remeshed
 from printprep.mesh.sample import points_on_surface
+from printprep.mesh.sew import sewn
 from printprep.mesh.shell_figures import closed_shells, shell_figures
 from printprep.mesh.shells import DUST_MM3, Candidate, Refusal, united
 from printprep.mesh.weld import compact
@@ -50,6 +52,8 @@ def repair(model: Model, crumb_mm3: float = DUST_MM3) -> Solid:
         that agrees with it.
     """
     _refuse_flat(model)
+    seams = sewn(model)
+    model = seams.model
     model, crumbs = without_crumb_shells(model, crumb_mm3)
     faces, turned = right_side_out(model.vertices, model.faces)
     reference = Reference.of(model.vertices, faces)
@@ -64,7 +68,9 @@ def repair(model: Model, crumb_mm3: float = DUST_MM3) -> Solid:
             continue
         fault = _fault(offer, reference)
         if fault is None:
-            return _solid(model, faces, rung, offer, (*crumbs, *turned, *skipped))
+            before = (*seams.actions, *crumbs, *turned, *skipped)
+            solid = _solid(model, faces, rung, offer, before)
+            return replace(solid, repair=_moved_more(solid.repair, seams.moved_mm))
         reasons.append(f"{rung}: {fault}")
     raise GeometryError(
         f"{model.name} cannot be made a solid ({'; '.join(reasons)}).",
@@ -89,8 +95,12 @@ def _fault(offer: Candidate, reference: Reference) -> str | None:
     return reference.disagreement(offer.manifold, offer.slack_mm3)
 
 
-def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[str, ...]]:
+def without_crumb_shells(
+    model: Model, crumb_mm3: float, most_shells: float = MOST_SHELLS
+) -> tuple[Model, tuple[str, ...]]:
     """The model without closed shells that are too small to print, and a sentence on them.
+
+    most_shells : infinite for a model whose cracks are not sewn yet.
 
     Raises GeometryError where nothing else is left, or more shells than can be sorted.
     """
@@ -104,10 +114,10 @@ def without_crumb_shells(model: Model, crumb_mm3: float) -> tuple[Model, tuple[s
             "mm³: none of them prints.",
             "Unite them in the program that made the model, or scale it up (--size).",
         )
-    if count > MOST_SHELLS:
+    if count > most_shells:
         raise GeometryError(
-            f"{model.name} consists of {count} separate pieces of surface; {MOST_SHELLS} is the "
-            "most that is repaired.",
+            f"{model.name} consists of {count} separate pieces of surface; {most_shells:g} is "
+            "the most that is repaired.",
             "Unite them in the program that made the model.",
         )
     if not crumbs.any():
@@ -167,6 +177,11 @@ def _solid(
         ),
         placement=placement,
     )
+
+
+def _moved_more(repair: Repair, before_mm: float) -> Repair:
+    """A repair after a step that moved the surface by up to ``before_mm``."""
+    return replace(repair, moved_max_mm=repair.moved_max_mm + before_mm)
 
 
 def _seated(manifold: Manifold, placement: Float) -> tuple[Manifold, Float]:

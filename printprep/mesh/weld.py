@@ -95,15 +95,21 @@ def unique_rows(rows: Rows) -> tuple[Rows, Int]:
 
 
 def _weld_near(mesh: Welded, tolerance: float) -> Welded:
-    """A mesh with vertices that share a cell joined to the first one, in time linear in them.
-
-    Cells are cubes of twice the tolerance in eight grids, each moved by half a cell along some
-    axes: vertices within the tolerance along each axis share a cell in one of them.
-    """
+    """A mesh with vertices that are near each other joined to the first one."""
     if not tolerance > 0.0:
         return mesh
-    count = len(mesh.vertices)
-    scaled = mesh.vertices / (2 * tolerance)
+    near = _kept(mesh.vertices, first_near(mesh.vertices, tolerance)[mesh.faces])
+    return Welded(near.vertices, near.faces, mesh.kept[near.kept])
+
+
+def first_near(points: Float, tolerance: float) -> Int:
+    """(n,) for each of points (n, 3) the first one near it, directly or through others.
+
+    It takes time linear in them.  Cells are cubes of twice the tolerance in eight grids, each moved
+    by half a cell along some axes: points within the tolerance along each axis share a cell in one
+    of them, and those of one cell are near.
+    """
+    scaled = points / (2 * tolerance)
     one, other = [], []
     for corner in range(8):
         shift = np.array([corner & 1, corner >> 1 & 1, corner >> 2 & 1]) / 2
@@ -112,14 +118,12 @@ def _weld_near(mesh: Welded, tolerance: float) -> Welded:
         same = np.flatnonzero((cells[order][1:] == cells[order][:-1]).all(axis=1))
         one.append(order[same])
         other.append(order[same + 1])
-    first = first_connected(np.concatenate(one), np.concatenate(other), count)
-    near = _kept(mesh.vertices, first[mesh.faces])
-    return Welded(near.vertices, near.faces, mesh.kept[near.kept])
+    return first_connected(np.concatenate(one), np.concatenate(other), len(points))
 
 
 def _kept(vertices: Float, faces: Int) -> Welded:
     """A mesh without faces (m, 3) that use a vertex twice, and without unused vertices (n, 3)."""
-    kept = np.flatnonzero(_distinct(faces))
+    kept = np.flatnonzero(distinct(faces))
     return Welded(*compact(vertices, faces[kept]), kept)
 
 
@@ -144,11 +148,11 @@ def connected(one: Int, other: Int, count: int) -> Int:
 
 def drop_collapsed(faces: Int) -> Int:
     """Faces (m, 3) without those that use a vertex twice."""
-    kept: Int = faces[_distinct(faces)]
+    kept: Int = faces[distinct(faces)]
     return kept
 
 
-def _distinct(faces: Int) -> Bool:
+def distinct(faces: Int) -> Bool:
     """(m,) whether the corners of faces (m, 3) are three."""
     a, b, c = faces.T
     distinct: Bool = (a != b) & (b != c) & (c != a)
@@ -187,6 +191,23 @@ def is_closed(faces: Int, *, once: bool) -> bool:
     if once and (there[1:] == there[:-1]).any():
         return False
     return np.array_equal(there, back)
+
+
+def unmatched_edges(faces: Int) -> Int:
+    """(k, 2) directed edges that faces (m, 3) lack to be closed, each as often as it is missing."""
+    if is_closed(faces, once=False):
+        return np.zeros((0, 2), dtype=np.int64)
+    edges = directed_edges(faces)
+    size = int(faces.max(initial=0)) + 1
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    keys, index = np.unique(low * size + high, return_inverse=True)
+    ends = np.stack(np.divmod(keys, size), axis=1)
+    excess = np.bincount(
+        index.ravel(), weights=np.where(edges[:, 0] < edges[:, 1], 1, -1), minlength=len(ends)
+    ).astype(np.int64)
+    forward = np.repeat(ends, np.maximum(-excess, 0), axis=0)
+    backward = np.repeat(ends[:, ::-1], np.maximum(excess, 0), axis=0)
+    return np.vstack([forward, backward])
 
 
 def opposite_edges(faces: Int) -> tuple[Int, Int]:

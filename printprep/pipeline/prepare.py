@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,7 +60,7 @@ def prepare(
     check_size(placed, profile, placement)
     check_memory(placed, profile, resolution, max_memory_mib)
     with progress.stage("repair"):
-        placed, crumbs = without_crumb_shells(placed, profile.crumb_mm3)
+        placed, crumbs = without_crumb_shells(placed, profile.crumb_mm3, math.inf)
         solid = _also(repair(placed, profile.crumb_mm3), crumbs)
         if placed.paint is not None:
             solid = replace(solid, manifold=facets_apart(solid.manifold))
