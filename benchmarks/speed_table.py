@@ -5,7 +5,9 @@
 Each command is a process of its own, timed from its start to its end: `hollow` with the default
 profile, without vaults, and for resin with drain holes; `check` of the first part; and the slicer,
 of the model with walls as thick and 15 % gyroid, and of the part.  The stages are those that
-`hollow --json` reports.  The file of --json keeps the rows, and later runs go on there.
+`hollow --json` reports.  Beside them, what prints: hours and grams by the slicer's G-code, for the
+model with 15 % gyroid and lightning, for `--fill infill`, and for the part.  The file of --json
+keeps the rows, and later runs go on there.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ import time
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rows import Row, markdown_lines, measured_rows, table_parser
@@ -37,7 +40,9 @@ from printprep.slicer.process import Slicer, find_slicer
 from printprep.slicer.prusa_ini import profile_settings
 from printprep.threemf.read import read_3mf
 
-LONGEST_S = 900
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
 # What is to be at most so many times what: the goals of the table's last lines.
 RATIOS = (
     ("hollow", "hollow_s", "gyroid_s", 0.5),
@@ -56,10 +61,12 @@ def main() -> int:
     slicer = find_slicer(chosen.slicer)
 
     def one(path: Path, up: str, kept: Row) -> Row:
-        del kept
-        return measured(path, up, chosen, profile, slicer)
+        row = kept if "hollow_s" in kept else measured(path, up, chosen, profile, slicer)
+        return row | other_prints(path, up, chosen, profile, slicer)
 
-    rows = measured_rows(chosen, one, lambda rows: table(rows, slicer.name))
+    rows = measured_rows(
+        chosen, one, lambda rows: table(rows, slicer.name), done=lambda row: "infill_h" in row
+    )
     return 0 if all("error" not in row for row in rows) else 1
 
 
@@ -85,19 +92,44 @@ def measured(path: Path, up: str, chosen: Namespace, profile: Profile, slicer: S
         row["triangles"] = len(read_3mf(part).faces)
         row["file_mib"] = part.stat().st_size / 2**20
 
-        x, y, _ = profile.printer.bed_mm
-        model.write_bytes(to_bytes(prepared.solid.manifold.translate((x / 2, y / 2, 0)), ".stl"))
-        settings = profile_settings(profile)
-        infill = {
-            **without_columns(settings),
-            **wall_keys(profile),
-            "fill_density": "15%",
-            "fill_pattern": "gyroid",
-        }
-        row |= sliced("part", slicer, part, settings, folder)
+        row |= sliced("part", slicer, part, profile_settings(profile), folder)
+        plate(prepared.solid.manifold, profile, model)
         with contextlib.suppress(ToolError):  # a foot that is a point has no layer
-            row |= sliced("gyroid", slicer, model, infill, folder)
+            row |= sliced("gyroid", slicer, model, uniform(profile, "gyroid"), folder)
     return row
+
+
+def other_prints(path: Path, up: str, chosen: Namespace, profile: Profile, slicer: Slicer) -> Row:
+    """Hours and grams of the model with lightning, and with infill as printprep plans it."""
+    row: Row = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        part, model = folder / "part.3mf", folder / "model.stl"
+        common = ["--up", up, "--size", str(chosen.size), "-p", chosen.profile]
+        own = [] if chosen.slicer is None else ["--slicer", str(chosen.slicer)]
+        run(["hollow", str(path), *common, "--fill", "infill", *own, "-o", str(part)])
+        row |= sliced("infill", slicer, part, profile_settings(profile), folder)
+        prepared = prepare(path, profile, Placement(up=up, size_mm=chosen.size), SILENT)
+        plate(prepared.solid.manifold, profile, model)
+        with contextlib.suppress(ToolError):
+            row |= sliced("lightning", slicer, model, uniform(profile, "lightning"), folder)
+    return row
+
+
+def plate(solid: Manifold, profile: Profile, file: Path) -> None:
+    """Write a solid as STL, in the middle of the bed."""
+    x, y, _ = profile.printer.bed_mm
+    file.write_bytes(to_bytes(solid.translate((x / 2, y / 2, 0)), ".stl"))
+
+
+def uniform(profile: Profile, pattern: str) -> dict[str, str]:
+    """A slicer's settings for walls as thick as the part's, and 15 % of one infill."""
+    return {
+        **without_columns(profile_settings(profile)),
+        **wall_keys(profile),
+        "fill_density": "15%",
+        "fill_pattern": pattern,
+    }
 
 
 # A process counts the memory of the one that starts it as its own: this one is small.
@@ -151,19 +183,26 @@ COLUMNS = (
     ("check s", "check_s", "{:.1f}"),
     ("slicer: gyroid s", "gyroid_s", "{:.1f}"),
     ("part s", "part_s", "{:.1f}"),
-    ("gyroid h", "gyroid_h", "{:.2f}"),
-    ("part h", "part_h", "{:.2f}"),
-    ("gyroid g", "gyroid_g", "{:.1f}"),
-    ("part g", "part_g", "{:.1f}"),
+    ("part / gyroid", "part_ratio", "{:.2f}"),
+)
+PRINTS = (
+    COLUMNS[0],
+    *((f"{name} h", f"{name}_h", "{:.2f}") for name in ("gyroid", "lightning", "infill", "part")),
+    *((f"{name} g", f"{name}_g", "{:.1f}") for name in ("gyroid", "lightning", "infill", "part")),
 )
 
 
 def table(rows: Sequence[Row], slicer: str) -> str:
     """The runs, their stages, and ratios to the slicer."""
     stages = list(dict.fromkeys(key for row in rows for key in row if key.startswith("stage_")))
+    rows = [
+        row | ({"part_ratio": row["part_s"] / row["gyroid_s"]} if "gyroid_s" in row else {})
+        for row in rows
+    ]
     columns = [COLUMNS[0], *((key.removeprefix("stage_"), key, "{:.2f}") for key in stages)]
     lines = [f"{platform.machine()}, {os.cpu_count()} processors, {slicer}", ""]
     lines += markdown_lines(COLUMNS, rows)
+    lines += ["", "What prints, by the slicer:", "", *markdown_lines(PRINTS, rows)]
     lines += ["", "Seconds of each stage of `hollow`:", "", *markdown_lines(columns, rows), ""]
     for title, ours, other, goal in RATIOS:
         found = {row["model"]: row[ours] / row[other] for row in rows if row.get(other)}

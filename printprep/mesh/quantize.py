@@ -30,6 +30,8 @@ _FLAT_SHELL_MM3 = 0.5
 _APART_MM = 2e-4
 # Tolerance of each attempt's simplification, none at first.
 _MERGED_MM = (0.0, 2e-5, 5e-5, 1e-4, 2e-4, 4e-4)
+# Rounds of moving apart at crowded edges alone.
+_MOST_ROUNDS = 3
 # The outside may move this much.
 _MOVED_MM = 1e-3
 _NUDGE = "A slightly different size (--size) usually avoids it."
@@ -52,6 +54,9 @@ def quantized(manifold: Manifold) -> Manifold:
         same = _is_rounded(manifold, len(vertices), len(faces))
         return _without_flat_shells(manifold if same else _rebuilt(vertices, faces))
     reason = "it still touches itself"
+    near = _apart_at_crowded_edges(manifold)
+    if near is not None:
+        return _without_flat_shells(near)
     apart, folds = manifold, None
     for tolerance_mm in _MERGED_MM:
         # Welding the ends of an edge shorter than a float32 step folds triangles over.
@@ -148,8 +153,27 @@ def _is_flat(shell: Manifold) -> bool:
     return bool(volume < _FLAT_SHELL_MM3 and 2 * volume < _FLAT_SHELL_MM * area)
 
 
-def _moved_apart(manifold: Manifold) -> Manifold:
+def _apart_at_crowded_edges(manifold: Manifold) -> Manifold | None:
+    """The manifold moved apart only where edges are crowded, the gentlest way; None where it fails.
+
+    Elsewhere surfaces may touch in a point: moved apart there, they could begin to touch along an
+    edge beside it.
+    """
+    apart = manifold
+    for _ in range(_MOST_ROUNDS):
+        vertices, faces = quantized_arrays(apart)
+        apart = _moved_apart(apart, vertices[np.unique(crowded_edges(faces))])
+        vertices, faces = quantized_arrays(apart)
+        if not len(crowded_edges(faces)):
+            found = _rebuilt(vertices, faces)
+            return found if unfaithful(manifold, found, _MOVED_MM) is None else None
+    return None
+
+
+def _moved_apart(manifold: Manifold, at: Float | None = None) -> Manifold:
     """The manifold with vertices that share a position moved a little along their own normals.
+
+    at : (k, 3) mm, the positions where they move, None for all.
 
     Each moves to the side that its fan of triangles bends to: into the material of a ridge, into
     the void of a groove, so that both touching surfaces draw back.  This works on the manifold as
@@ -157,8 +181,11 @@ def _moved_apart(manifold: Manifold) -> Manifold:
     """
     exact, faces = arrays(manifold)
     points = rounded(exact)
-    _, index, counts = np.unique(points, axis=0, return_inverse=True, return_counts=True)
-    shared = counts[np.ravel(index)] > 1
+    _, index = unique_rows(points)
+    shared = np.bincount(index)[index] > 1
+    if at is not None:
+        _, place = unique_rows(np.concatenate([points, at]))
+        shared &= np.isin(place[: len(points)], place[len(points) :])
     corners = points[faces]
     normals = area_normals(corners)
     area = np.linalg.norm(normals, axis=1, keepdims=True)

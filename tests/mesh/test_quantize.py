@@ -38,6 +38,17 @@ def test_touching_edges_are_drawn_apart(name):
     assert apart.max() < 1e-3
 
 
+def test_where_only_corners_touch_nothing_moves():
+    """Moved apart there, surfaces may begin to touch along an edge beside it (a boot did)."""
+    edge = box(10) + box(10).translate((10, 10, 0))
+    corner = box(10).translate((20, 20, 10))
+    part = edge + corner
+    before, after = (quantized_arrays(each)[0] for each in (part, quantized(part)))
+    stayed = set(map(tuple, after.tolist()))
+    moved = [point for point in before.tolist() if tuple(point) not in stayed]
+    assert sorted(moved) == [[5.0, 5.0, 0.0], [5.0, 5.0, 10.0]]  # the ends of the shared edge
+
+
 @pytest.mark.parametrize("name", TOUCHING)
 def test_it_changes_nothing_twice(name):
     once = quantized(TOUCHING[name]())
