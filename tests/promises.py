@@ -24,6 +24,7 @@ from printprep.pipeline.check import check
 
 if TYPE_CHECKING:
     from printprep.result import HollowResult
+    from printprep.types import Drain
 
 Float = NDArray[np.float64]
 
@@ -83,15 +84,35 @@ def broken_promises(result: HollowResult, outside: Manifold, *, again: bytes | N
 
 
 def _beside_drains(judged: Judged, points: Float) -> NDArray[np.bool_]:
+    """Which points (n, 3) mm lie around the mouth of a drain hole."""
     near = np.zeros(len(points), dtype=bool)
-    drainage = judged.result.drainage
-    for drain in () if drainage is None else drainage.drains:
-        away = points - np.array(drain.centre_mm)
-        along = away @ np.array(drain.axis)
-        across = np.linalg.norm(away - along[:, None] * np.array(drain.axis), axis=1)
+    for drain in _drains(judged):
+        along, across = _from_axis(drain, points)
         reach = drain.length_mm + 2 * drain.diameter_mm
         near |= (across < 0.7 * drain.diameter_mm) & (np.abs(along) < reach)
     return near
+
+
+def _along_drills(judged: Judged, points: Float) -> NDArray[np.bool_]:
+    """Which points (n, 3) mm may lie on the side of a drain hole, anywhere on its way in."""
+    drilled = np.zeros(len(points), dtype=bool)
+    for drain in _drains(judged):
+        along, across = _from_axis(drain, points)
+        drilled |= (across < 0.51 * drain.diameter_mm) & (along < 0)
+    return drilled
+
+
+def _drains(judged: Judged) -> tuple[Drain, ...]:
+    drainage = judged.result.drainage
+    return () if drainage is None else drainage.drains
+
+
+def _from_axis(drain: Drain, points: Float) -> tuple[Float, Float]:
+    """(n,) mm outward from the mouth along a hole's axis, and (n,) mm from the axis."""
+    axis = np.array(drain.axis)
+    away = points - np.array(drain.centre_mm)
+    along = away @ axis
+    return along, np.linalg.norm(away - along[:, None] * axis, axis=1)
 
 
 def _bounds(solid: Manifold, points: Float, normals: Float) -> NDArray[np.bool_]:
@@ -208,18 +229,6 @@ def _wall(judged: Judged) -> list[str]:
         if least < limit_mm:
             return [f"3: a wall is {least:.3f} mm, not {limit_mm:.3f}"]
     return []
-
-
-def _along_drills(judged: Judged, points: Float) -> NDArray[np.bool_]:
-    """Which points may lie on the side of a drain hole, anywhere on its way in."""
-    along_one = np.zeros(len(points), dtype=bool)
-    drainage = judged.result.drainage
-    for drain in () if drainage is None else drainage.drains:
-        away = points - np.array(drain.centre_mm)
-        along = away @ np.array(drain.axis)
-        across = np.linalg.norm(away - along[:, None] * np.array(drain.axis), axis=1)
-        along_one |= (across < 0.51 * drain.diameter_mm) & (along < 0)
-    return along_one
 
 
 def _stands(judged: Judged) -> list[str]:

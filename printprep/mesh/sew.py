@@ -67,8 +67,9 @@ def _joined(
 ) -> tuple[Int, Int, float] | None:
     """Closed faces (k, 3), which of faces (m, 3) they were, and how far corners moved in mm.
 
-    rims : (r,) the corners of open edges.  None where it stays open, or a corner would move by more
-    than a diagonal of the tolerance: a row of near corners is an edge, not one corner.
+    vertices : (n, 3) mm;  rims : (r,) the corners of open edges.  None where it stays open, or a
+    corner would move by more than twice the width of a crack: a row of near corners is an edge, not
+    one corner.
     """
     first = np.arange(len(vertices))
     first[rims] = rims[first_near(vertices[rims], crack_mm)]
