@@ -21,7 +21,9 @@ from printprep.cavity.fewer_triangles import (
 )
 from printprep.grid.distance import DepthField
 from printprep.mesh.aabb_tree import tree_of
-from printprep.mesh.measure import arrays, gap_mm
+from printprep.mesh.gap import gap_mm
+from printprep.mesh.measure import arrays
+from printprep.mesh.quantize import quantized_arrays
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -63,7 +65,7 @@ def cavity_surface(solid: Manifold, field: DepthField | None, wall_mm: float) ->
         from manifold3d import Manifold
 
         return Manifold()
-    outside = tree_of(*arrays(solid))
+    outside = tree_of(*quantized_arrays(solid))
     field = DepthField(field.grid, field.depth_mm.copy())
     lower_convex(field, wall_mm)
     shares = list(SHARES)

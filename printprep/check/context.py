@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from printprep.check.walls import Enclosed, Wall, united, wall_min_mm
+from printprep.kept import Once
 from printprep.mesh.measure import innermost, shells
 from printprep.types import NO_VOIDS, Advice, Drainage, Lean, Model, ModelVoids, Repair, Stability
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from manifold3d import Manifold
 
     from printprep.drainage.trapped import Chamber, Clearance, Cup, Pocket
     from printprep.mesh.self_intersections import SelfIntersections
     from printprep.thickness import Thin
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +58,7 @@ class CheckContext:
     voids: ModelVoids = NO_VOIDS
     drained: tuple[Manifold, ...] = ()
     walls: tuple[Enclosed, ...] = ()
+    _measured: Once = field(default_factory=Once, init=False, repr=False)
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
@@ -69,15 +66,21 @@ class CheckContext:
         x0, y0, z0, x1, y1, z1 = self.part.bounding_box()
         return x1 - x0, y1 - y0, z1 - z0
 
-    @cached_property
+    @property
     def wall(self) -> Wall | None:
         """The thinnest wall between cavities and outside, None without a cavity."""
+        return self._measured.get("wall", self._wall)
+
+    def _wall(self) -> Wall | None:
         found = [wall_min_mm(pair) for pair in self.walls or (self,)]
         return min((wall for wall in found if wall is not None), default=None)
 
-    @cached_property
+    @property
     def self_intersections(self) -> SelfIntersections | None:
         """Where the triangles of the file intersect each other, None if they do not."""
+        return self._measured.get("self-intersections", self._self_intersections)
+
+    def _self_intersections(self) -> SelfIntersections | None:
         from printprep.mesh.self_intersections import self_intersections
         from printprep.mesh.weld import in_order, unique_rows
 
@@ -92,21 +95,20 @@ class CheckContext:
         """Where the material is thinner than a limit."""
         from printprep.thickness import thin_places
 
-        return self._kept("thin", limit_mm, lambda: thin_places(self.part, limit_mm))
+        return self._measured.get(("thin", limit_mm), lambda: thin_places(self.part, limit_mm))
 
     def narrow_below(self, limit_mm: float) -> Thin:
         """Where the space outside the part is narrower than a limit."""
         from printprep.thickness import gap_places
 
-        return self._kept("narrow", limit_mm, lambda: gap_places(self.outside, limit_mm))
+        return self._measured.get(("narrow", limit_mm), lambda: gap_places(self.outside, limit_mm))
 
     def pockets(self, diameter_mm: float) -> tuple[Pocket, ...]:
         """The spaces that a ball of this diameter cannot leave."""
         from printprep.drainage.trapped import trapped
 
-        return self._kept(
-            "pockets",
-            diameter_mm,
+        return self._measured.get(
+            ("pockets", diameter_mm),
             lambda: trapped(self.part, diameter_mm, space=self._clearance(diameter_mm)),
         )
 
@@ -114,9 +116,8 @@ class CheckContext:
         """The enclosed spaces with ways out, on the grid for holes of this diameter."""
         from printprep.drainage.trapped import chambers
 
-        return self._kept(
-            "chambers",
-            diameter_mm,
+        return self._measured.get(
+            ("chambers", diameter_mm),
             lambda: chambers(self.part, diameter_mm, space=self._clearance(diameter_mm)),
         )
 
@@ -126,25 +127,16 @@ class CheckContext:
 
         if self.part.is_empty():
             return None
-        return self._kept("clearance", diameter_mm, lambda: pour_clearance(self.part, diameter_mm))
+        return self._measured.get(
+            ("clearance", diameter_mm), lambda: pour_clearance(self.part, diameter_mm)
+        )
 
-    @cached_property
+    @property
     def cups(self) -> tuple[Cup, ...]:
         """The suction cups that form while the part prints."""
         from printprep.drainage.trapped import suction_cups
 
-        return suction_cups(self.part)
-
-    def _kept(self, what: str, limit_mm: float, measure: Callable[[], T]) -> T:
-        key = (what, limit_mm)
-        if key not in self._measured:
-            self._measured[key] = measure()
-        kept: T = self._measured[key]
-        return kept
-
-    @cached_property
-    def _measured(self) -> dict[tuple[str, float], Any]:
-        return {}
+        return self._measured.get("cups", lambda: suction_cups(self.part))
 
 
 def separated(part: Manifold) -> tuple[Manifold, tuple[Manifold, ...]]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import CATALOGUE
+from printprep.side_by_side import side_by_side
 from printprep.types import Finding, Severity
 
 if TYPE_CHECKING:
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
 Rule = Callable[["CheckContext", "Profile"], Iterable[Finding]]
 
 _RANK: Mapping[Severity, int] = MappingProxyType({"info": 0, "warning": 1, "error": 2})
+# The rules that take longest begin first, so that none of them is alone at the end.
+_DEAR = frozenset({"gap", "overlapping-shells", "wall-thickness"})
 RULES: dict[str, Rule] = {}
 """Every rule by its id; :func:`rule` adds one."""
 
@@ -40,8 +44,15 @@ def rule(rule_id: str) -> Callable[[Rule], Rule]:
 
 def run_rules(context: CheckContext, profile: Profile) -> tuple[Finding, ...]:
     """The findings of all rules: the worst first, then by rule id, then in the rule's order."""
-    findings = [item for _, check in sorted(RULES.items()) for item in check(context, profile)]
-    return sorted_findings(findings)
+    dearest_first = sorted(RULES, key=lambda rule_id: (rule_id not in _DEAR, rule_id))
+    found = side_by_side([partial(_found, RULES[k], context, profile) for k in dearest_first])
+    by_rule = dict(zip(dearest_first, found, strict=True))
+    return sorted_findings(item for rule_id in sorted(RULES) for item in by_rule[rule_id])
+
+
+def _found(check: Rule, context: CheckContext, profile: Profile) -> list[Finding]:
+    """The findings of one rule."""
+    return list(check(context, profile))
 
 
 def sorted_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:

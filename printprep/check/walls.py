@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from printprep.mesh.aabb_tree import tree_of
-from printprep.mesh.measure import arrays, gap_mm
+from printprep.mesh.gap import gap_mm
+from printprep.mesh.measure import arrays
 from printprep.mesh.quantize import quantized_arrays
 
 if TYPE_CHECKING:
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from printprep.arrays import Float, Int
+
+
+# The corners of a face whose edges are shorter than this stand for its centre.
+SMALL_MM = 0.5
 
 
 class Walled(Protocol):
@@ -44,9 +49,10 @@ class Wall(NamedTuple):
 def wall_min_mm(part: Walled) -> Wall | None:
     """The thinnest wall between the cavities and the outside; None without a cavity.
 
-    The point comes from the vertices and face centres of each mesh and the nearest point of the
-    other.  The thickness is the exact least distance between the two triangle meshes: where two
-    edges cross, it is smaller than at any vertex.  It is 0 where a cavity breaks through.
+    The point comes from the vertices of each mesh, the centres of its faces that are not small, and
+    the nearest point of the other.  The thickness is the exact least distance between the two
+    triangle meshes: where two edges cross, it is smaller than at any vertex.  It is 0 where a
+    cavity breaks through.
     """
     if not part.cavities:
         return None
@@ -65,7 +71,9 @@ def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float
     of, to : (n, 3) vertices in mm and (m, 3) faces each.  The midpoint is (3,) mm.
     """
     vertices, faces = of
-    points = np.concatenate([vertices, vertices[faces].mean(axis=1)])
+    a, b, c = (vertices[corner] for corner in faces.T)
+    large = (((a - b) ** 2).sum(axis=1) > SMALL_MM**2) | (((c - b) ** 2).sum(axis=1) > SMALL_MM**2)
+    points = np.concatenate([vertices, (a + b + c)[large] / 3])
     distance, nearest = tree_of(*to).nearest(points)
     least = int(np.argmin(distance))
     return float(distance[least]), (points[least] + nearest[least]) / 2

@@ -16,7 +16,7 @@ import numpy as np
 
 from printprep.grid.grid import axis_mm, points_mm, subdivided
 from printprep.mesh.aabb_tree import SurfaceTree, tree_of
-from printprep.mesh.measure import arrays
+from printprep.mesh.quantize import quantized_arrays
 from printprep.mesh.winding_columns import crossings_of, winding_in_closed
 from printprep.types import Grid
 
@@ -42,8 +42,8 @@ class Surface:
 
     @staticmethod
     def of(manifold: Manifold) -> Surface:
-        """The surface of a manifold, voids included."""
-        return Surface(*arrays(manifold))
+        """The surface of a manifold as files hold it, voids included; checks use its tree too."""
+        return Surface(*quantized_arrays(manifold))
 
     def distance_mm(self, points: Float) -> Float:
         """(k,) mm, unsigned exact distance of points (k, 3) mm to the surface, inf if empty."""

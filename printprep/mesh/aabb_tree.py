@@ -8,6 +8,7 @@ for, rays go through libigl's tree too, about twenty times as slowly.
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b
@@ -15,16 +16,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from printprep.arrays import stable_order
 from printprep.mesh.measure import area_normals
 
 if TYPE_CHECKING:
+    from typing import TypeVar
+
     from printprep.arrays import Bool, Float, Int
+
+    Rows = TypeVar("Rows", Float, Int)
 
 # A triangle is long where an edge is longer than the mesh's longest side over this.
 LONG_SHARE = 10
 # Halving stops before a mesh has so many times its triangles, and so many more.
 MOST_PIECES = 2
 FEW_FACES = 20_000
+# From so many triangles on, it pays to put them in order first.
+MANY_FACES = 100_000
 
 
 def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
@@ -35,14 +43,21 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
     vertices = np.ascontiguousarray(vertices, dtype=np.float64)
     faces = np.ascontiguousarray(faces, dtype=np.int64)
     key = blake2b(vertices.data, digest_size=16).digest() + blake2b(faces.data).digest()
-    # A copy: the caller may move his corners afterwards, and the tree is still that of this mesh.
-    found = _KEPT.pop(key, None) or SurfaceTree(vertices.copy(), faces.copy())
-    _KEPT[key] = found  # the last used are at the end
-    while len(_KEPT) > _MOST_TREES or (
-        len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES
-    ):
-        del _KEPT[next(iter(_KEPT))]
+    with _ONE_AT_A_TIME:  # a thread that wants the tree that another one builds waits for it
+        # A copy: the caller may move his corners afterwards, and the tree is still that of this
+        # mesh.
+        found = _KEPT.pop(key, None) or SurfaceTree(_unchanging(vertices), _unchanging(faces))
+        _KEPT[key] = found  # the last used are at the end
+        while len(_KEPT) > _MOST_TREES or (
+            len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES
+        ):
+            del _KEPT[next(iter(_KEPT))]
     return found
+
+
+def _unchanging(array: Rows) -> Rows:
+    """An array that may change as a copy."""
+    return array.copy() if array.flags.writeable else array
 
 
 class SurfaceTree:
@@ -54,7 +69,7 @@ class SurfaceTree:
 
         self.vertices = np.ascontiguousarray(vertices, dtype=np.float64)
         self.faces = np.ascontiguousarray(faces, dtype=np.int64)
-        self._pieces = _bisected(self.vertices, self.faces)
+        self._pieces = _nearby_together(_bisected(self.vertices, self.faces))
         self._tree: Any = igl.AABB()
         self._tree.init(self._pieces.vertices, self._pieces.faces)
         # A ray that starts on the surface is moved forward by this much.
@@ -181,8 +196,37 @@ def _bisected(vertices: Float, faces: Int) -> _Pieces:
         some = np.concatenate([some, np.arange(len(every) - len(some), len(every))])
 
 
+def _nearby_together(pieces: _Pieces) -> _Pieces:
+    """The same triangles and corners along a curve that fills space, where they are many.
+
+    What lies together in space then lies together in memory: a tree of a million triangles is built
+    and asked in three quarters of the time.
+    """
+    if len(pieces.faces) < MANY_FACES:
+        return pieces
+    place = _along_curve(pieces.vertices)
+    number = np.empty(len(place), dtype=np.int64)
+    number[place] = np.arange(len(place))
+    faces = number[pieces.faces]
+    order = stable_order(faces.min(axis=1))
+    return _Pieces(pieces.vertices[place], faces[order], pieces.owner[order])
+
+
+def _along_curve(points: Float) -> Int:
+    """(n,) the order of points (n, 3) mm along a Z-order curve (Morton, 1966) of 1024³ cells."""
+    low = points.min(axis=0)
+    size = float(np.ptp(points, axis=0).max()) or 1.0
+    cells = np.floor((points - low) * (1023 / size)).astype(np.int64)
+    spread = np.zeros(1024, dtype=np.int64)
+    for bit in range(10):  # bit b of a coordinate becomes bit 3b
+        spread |= (np.arange(1024) >> bit & 1) << (3 * bit)
+    x, y, z = (spread[cells[:, axis]] for axis in range(3))
+    return stable_order(x | y << 1 | z << 2)
+
+
 # So many trees are kept, as long as they have no more faces together; one takes 172 bytes for
 # libigl's tree.  Embree crashes where some thousand scenes are held.
 _MOST_TREES = 8
 _MOST_FACES = 5_200_000
 _KEPT: dict[bytes, SurfaceTree] = {}
+_ONE_AT_A_TIME = threading.Lock()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
+from printprep.kept import kept, read_only
 from printprep.types import MassProperties
 
 if TYPE_CHECKING:
@@ -34,8 +35,19 @@ _STATUS = {
 }
 
 
+@kept(most=2)
 def arrays(manifold: Manifold) -> tuple[Float, Int]:
-    """Vertices (n, 3) float64 mm and faces (m, 3) int64, counter-clockwise seen from outside."""
+    """Vertices (n, 3) float64 mm and faces (m, 3) int64, counter-clockwise seen from outside.
+
+    They are read-only.
+    """
+    found = _arrays(manifold)
+    read_only(*found)
+    return found
+
+
+def _arrays(manifold: Manifold) -> tuple[Float, Int]:
+    """Vertices (n, 3) and faces (m, 3), as :func:`arrays` gives them, anew."""
     mesh = manifold.to_mesh64()
     vertices = np.ascontiguousarray(mesh.vert_properties[:, :3], dtype=np.float64)
     faces = np.asarray(mesh.tri_verts).astype(np.int64)
@@ -194,27 +206,13 @@ def distance_mm(points: Float, manifold: Manifold) -> Float:
     return distance_to_mesh_mm(points, *arrays(manifold))
 
 
-def gap_mm(outside: Manifold, inside: Manifold, at_most_mm: float) -> float:
-    """Exact least distance in mm between the surfaces of a solid and of another one in it.
-
-    at_most_mm : a greater distance is reported as this.  It is 0 where one breaks through.
-    """
-    from manifold3d import Manifold
-
-    low, high = np.reshape(outside.bounding_box(), (2, 3))
-    margin = 1.0 + float((high - low).max())
-    size, corner = (high - low + 2 * margin).tolist(), (low - margin).tolist()
-    # Everything beyond the outside, as a solid: the gap between it and the inner one
-    beyond = Manifold.cube(size).translate(corner) - outside
-    return float(beyond.min_gap(inside, at_most_mm))
-
-
 def inverted(manifold: Manifold) -> Manifold:
     """The same surface turned inside out: a solid becomes a void, a void a solid."""
     vertices, faces = arrays(manifold)
     return from_arrays(vertices, faces[:, ::-1])
 
 
+@kept(most=1)
 def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ...]]:
     """The shells of a manifold: those that bound material from outside, and the voids.
 

@@ -113,7 +113,9 @@ def _turned_alike(vertices: Float, faces: Int) -> tuple[Int, int]:
 
 def _piece(vertices: Float, faces: Int) -> _Piece:
     """The piece with faces (m, 3) of the whole mesh's vertices (n, 3) mm."""
-    used = vertices[np.unique(faces)]
+    among = np.zeros(len(vertices), dtype=bool)
+    among[faces] = True
+    used = vertices[among]
     corners = (vertices - used.mean(axis=0))[faces]
     area = float(np.linalg.norm(area_normals(corners), axis=1).sum()) / 2
     volume = float(signed_volumes(corners).sum())

@@ -7,12 +7,12 @@ the part is rounded first, and all checks and files start from the rounded part.
 
 from __future__ import annotations
 
-from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from printprep.errors import GeometryError
+from printprep.kept import kept, read_only
 from printprep.mesh.faithful import FOLDS, unfaithful
 from printprep.mesh.measure import area_normals, arrays, from_arrays, together
 from printprep.mesh.rounding import rounded
@@ -49,7 +49,9 @@ def quantized(manifold: Manifold) -> Manifold:
 
     Raises GeometryError where no such form is found.
     """
-    vertices, faces = quantized_arrays(manifold)
+    # What is not rounded yet is used here alone
+    once = quantized_arrays if quantized_arrays.known(manifold) else _quantized_arrays
+    vertices, faces = once(manifold)
     if not len(crowded_edges(faces)):
         same = _is_rounded(manifold, len(vertices), len(faces))
         return _without_flat_shells(manifold if same else _rebuilt(vertices, faces))
@@ -80,6 +82,7 @@ def quantized(manifold: Manifold) -> Manifold:
     )
 
 
+@kept(most=3)
 def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     """Vertices rounded to float32 and welded, and the triangles that still have three corners.
 
@@ -87,18 +90,9 @@ def quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
     counter-clockwise seen from outside, each from its smallest index on, sorted: the same solid
     gives the same arrays, which are read-only.
     """
-    for known, found in _LAST:
-        if known is manifold:
-            return found
     found = _quantized_arrays(manifold)
-    for array in found:
-        array.setflags(write=False)
-    _LAST.append((manifold, found))
+    read_only(*found)
     return found
-
-
-# Of the last solids: a part is written, measured and checked by the same arrays.
-_LAST: deque[tuple[Manifold, tuple[Float, Int]]] = deque(maxlen=2)
 
 
 def _quantized_arrays(manifold: Manifold) -> tuple[Float, Int]:
@@ -133,11 +127,15 @@ def crowded_edges(faces: Int) -> Int:
 def _rebuilt(vertices: Float, faces: Int) -> Manifold:
     """The manifold of rounded vertices (n, 3) mm and faces (m, 3)."""
     try:
-        return from_arrays(vertices, faces)
+        rebuilt = from_arrays(vertices, faces)
     except GeometryError as error:
         raise GeometryError(
             f"The part breaks when its coordinates are rounded for a file: {error.message}", _NUDGE
         ) from error
+    if rebuilt.num_tri() == len(faces):
+        read_only(vertices, faces)
+        quantized_arrays.keep((vertices, faces), rebuilt)
+    return rebuilt
 
 
 def _without_flat_shells(manifold: Manifold) -> Manifold:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.arrays import stable_order, unique_keys
 from printprep.mesh.aabb_tree import tree_of
 from printprep.mesh.measure import area_normals
 from printprep.mesh.weld import components, directed_edges, opposite_edges
@@ -47,6 +48,14 @@ class SelfIntersections:
     apart: Bool
 
 
+_NONE = SelfIntersections(
+    np.zeros((0, 2), dtype=np.int64),
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, 3)),
+    np.zeros(0, dtype=bool),
+)
+
+
 def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
     """The edges of a mesh that pass through it, each with the first triangle on its way.
 
@@ -54,9 +63,7 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
     """
     surface = tree_of(vertices, faces)
     every = np.sort(directed_edges(faces), axis=1)
-    _, first, same = np.unique(
-        every[:, 0] * len(vertices) + every[:, 1], return_index=True, return_inverse=True
-    )
+    first, same = unique_keys(every[:, 0] * len(vertices) + every[:, 1])
     edges = every[first]
     along = vertices[edges[:, 1]] - vertices[edges[:, 0]]
     length = np.linalg.norm(along, axis=1)
@@ -81,12 +88,16 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
         going = going[inside & own]
         done[going] += touch
     found = np.flatnonzero(hit >= 0)
+    if not len(found):
+        return _NONE
     at = vertices[edges[found, 0]] + (done[found] / length[found])[:, None] * along[found]
     least = _SHALLOW / _TOUCH * touch
     deep = _beyond(vertices, edges[found], faces[hit[found]]) > least
     deep &= _beyond(vertices, edges[found], _across(vertices, faces, hit[found], at, least)) > least
     deep &= _thickness(vertices[faces[hit[found]]]) > least
     found, at = found[deep], at[deep]
+    if not len(found):
+        return _NONE
     piece = np.zeros(len(vertices), dtype=np.int64)
     for number, group in enumerate(components(faces, len(vertices))):
         piece[faces[group]] = number
@@ -107,12 +118,16 @@ def _away(vertices: Float, faces: Int, first: Int, same: Int) -> Float:
     """
     normals = area_normals(vertices[faces])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(np.float64).tiny)[:, None]
-    of_edge = np.repeat(normals, 3, axis=0)
-    away = np.stack([np.bincount(same, axis, len(first)) for axis in of_edge.T], axis=1)
+    away: Float = np.stack(
+        [np.bincount(same, np.repeat(axis, 3), len(first)) for axis in normals.T],
+        axis=1,
+        dtype=np.float64,
+    )
     length = np.linalg.norm(away, axis=1, keepdims=True)
-    flat = length > _FLAT
-    result: Float = np.where(flat, away / np.where(flat, length, 1.0), of_edge[first])
-    return result
+    flat = length[:, 0] <= _FLAT
+    away /= np.maximum(length, _FLAT)
+    away[flat] = normals[first[flat] // 3]
+    return away
 
 
 def folded(vertices: Float, faces: Int) -> bool:
@@ -158,7 +173,7 @@ def _across(vertices: Float, faces: Int, hit: Int, at: Float, rim_mm: float) -> 
     result: Int = faces[hit].copy()
     edges = np.sort(directed_edges(faces), axis=1)
     keys = edges[:, 0] * len(vertices) + edges[:, 1]
-    order = np.argsort(keys, kind="stable")
+    order = stable_order(keys)
     corners = vertices[result]
     for index in range(3):
         start, way = corners[:, index], corners[:, (index + 1) % 3] - corners[:, index]

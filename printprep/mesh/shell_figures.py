@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.kept import kept
 from printprep.mesh.measure import arrays, from_arrays, signed_volumes, together
 from printprep.mesh.weld import compact, connected, directed_edges, is_closed
 
@@ -46,6 +47,7 @@ class ShellFigures:
         return result
 
 
+@kept(most=2)
 def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
     """Measure the shells of vertices (n, 3) mm and faces (m, 3)."""
     a, b, c = faces.T

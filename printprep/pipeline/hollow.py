@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from printprep.objectives import DEFAULT_OBJECTIVE, PLANE, Solver, check_solver, objective_of
 from printprep.pipeline.fills import fill_of
@@ -16,6 +17,7 @@ from printprep.pipeline.options import (
     drain_keys,
 )
 from printprep.progress import SILENT, Progress, Stage, Stopwatch
+from printprep.side_by_side import side_by_side
 
 if TYPE_CHECKING:
     import trimesh
@@ -65,11 +67,13 @@ def hollow_with(
     )
     prepared = settle_voids(prepared, options, clock)
     filled = fill_of(options.fill).run(prepared, options, lean, clock)
-    check_sound(filled.part, filled.drainage.drains if filled.drainage is not None else ())
+    drains = filled.drainage.drains if filled.drainage is not None else ()
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
-        rule_findings = run_rules(context, filled.profile)
+        sound = partial(check_sound, filled.part, drains)
+        checked: list[Any] = side_by_side([sound, partial(run_rules, context, filled.profile)])
+        rule_findings: tuple[Finding, ...] = checked[1]
         read_findings = reading_findings(prepared.model.notes)
     with clock.stage("alternative"):
         alternative = alternative_fill(options.fill, prepared, filled, lean)

@@ -15,7 +15,8 @@ from printprep.cavity.surface import CHORD, cavity_surface, isosurface, lower_co
 from printprep.grid.depth import measure_depths
 from printprep.grid.distance import DepthField
 from printprep.mesh.aabb_tree import SurfaceTree
-from printprep.mesh.measure import arrays, gap_mm
+from printprep.mesh.gap import gap_mm
+from printprep.mesh.measure import arrays
 from printprep.mesh.self_intersections import self_intersections
 from printprep.types import Grid
 
