@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 
 @rule("orientation")
 def orientation(context: CheckContext, profile: Profile) -> Iterator[Finding]:
-    """Prevents a slicer from taking material for a void where triangles face inward."""
+    """Prevents a slicer from taking material for a void where triangles face inward.
+
+    The triangles of a part that printprep made bound its material: the geometry kernel says so.
+    """
     del profile
     raw = context.raw
-    if raw is None:
+    if raw is None or context.hollowed:
         return
     outward, _ = right_side_out(raw.vertices, raw.faces)
     turned = np.flatnonzero((outward != raw.faces).any(axis=1))

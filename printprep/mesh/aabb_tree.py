@@ -18,6 +18,7 @@ import numpy as np
 
 from printprep.arrays import stable_order
 from printprep.mesh.measure import area_normals
+from printprep.mesh.weld import connected
 
 if TYPE_CHECKING:
     from typing import TypeVar
@@ -31,8 +32,10 @@ LONG_SHARE = 10
 # Halving stops before a mesh has so many times its triangles, and so many more.
 MOST_PIECES = 2
 FEW_FACES = 20_000
-# From so many triangles on, it pays to put them in order first.
+# From so many triangles on, it pays to put them in order first, and shells into trees of their own
+# where these are few.
 MANY_FACES = 100_000
+MOST_SHELLS = 8
 
 
 def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
@@ -46,13 +49,34 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
     with _ONE_AT_A_TIME:  # a thread that wants the tree that another one builds waits for it
         # A copy: the caller may move his corners afterwards, and the tree is still that of this
         # mesh.
-        found = _KEPT.pop(key, None) or SurfaceTree(_unchanging(vertices), _unchanging(faces))
+        found = _KEPT.pop(key, None) or _grown(_unchanging(vertices), _unchanging(faces))
         _KEPT[key] = found  # the last used are at the end
         while len(_KEPT) > _MOST_TREES or (
-            len(_KEPT) > 1 and sum(len(tree.faces) for tree in _KEPT.values()) > _MOST_FACES
+            len(_KEPT) > 1 and sum(tree.size for tree in _KEPT.values()) > _MOST_FACES
         ):
             del _KEPT[next(iter(_KEPT))]
     return found
+
+
+def _grown(vertices: Float, faces: Int) -> SurfaceTree:
+    """The tree of a mesh, or the trees of its few shells where they are large.
+
+    The outside of a part is a large shell that is searched alone too: its tree serves for both.
+    """
+    if len(faces) < MANY_FACES:
+        return SurfaceTree(vertices, faces)
+    a, b, c = faces.T
+    label = connected(np.append(a, b), np.append(b, c), len(vertices))
+    shells = np.flatnonzero(np.bincount(label[a]))
+    if not 1 < len(shells) <= MOST_SHELLS:
+        return SurfaceTree(vertices, faces)
+    grown, owner = [], []
+    for shell in shells.tolist():
+        corners, own = label == shell, np.flatnonzero(label[a] == shell)
+        number = np.cumsum(corners) - 1
+        grown.append(tree_of(vertices[corners], number[faces[own]]))
+        owner.append(own)
+    return _ShellTrees(vertices, faces, grown, owner)
 
 
 def _unchanging(array: Rows) -> Rows:
@@ -75,6 +99,11 @@ class SurfaceTree:
         # A ray that starts on the surface is moved forward by this much.
         self._centre_mm = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2
         self._beyond_mm = 1e-6 * float(np.ptp(vertices, axis=0).max())
+
+    @property
+    def size(self) -> int:
+        """How many triangles it holds."""
+        return len(self.faces)
 
     def nearest(self, points: Float) -> tuple[Float, Float]:
         """(k,) exact distances of points (k, 3) mm, and (k, 3) the nearest points of the mesh."""
@@ -157,6 +186,60 @@ class SurfaceTree:
         return scene
 
 
+class _ShellTrees(SurfaceTree):
+    """The tree of a mesh that consists of the trees of its shells."""
+
+    def __init__(
+        self, vertices: Float, faces: Int, shells: list[SurfaceTree], owner: list[Int]
+    ) -> None:
+        """vertices : (n, 3) mm;  faces : (m, 3);  owner : the faces of each shell."""
+        self.vertices, self.faces = vertices, faces
+        self._shells, self._owner = shells, owner
+
+    @property
+    def size(self) -> int:
+        return 0  # the trees of the shells are kept by themselves
+
+    def nearest_faces(self, points: Float) -> tuple[Float, Float, Int]:
+        found = [shell.nearest_faces(points) for shell in self._shells]
+        closest = np.argmin([distance for distance, _, _ in found], axis=0)
+        return (
+            _chosen(closest, [distance for distance, _, _ in found]),
+            _chosen(closest, [place for _, place, _ in found]),
+            _chosen(closest, self._numbered([face for _, _, face in found])),
+        )
+
+    def first_hit(self, points: Float, directions: Float) -> tuple[Float, Int]:
+        return self._first([shell.first_hit(points, directions) for shell in self._shells])
+
+    def first_hit_exactly(self, points: Float, directions: Float) -> tuple[Float, Int]:
+        return self._first([shell.first_hit_exactly(points, directions) for shell in self._shells])
+
+    def may_hit(self, points: Float, directions: Float, within_mm: Float) -> Bool:
+        hits = [shell.may_hit(points, directions, within_mm) for shell in self._shells]
+        result: Bool = np.logical_or.reduce(hits)
+        return result
+
+    def _first(self, found: list[tuple[Float, Int]]) -> tuple[Float, Int]:
+        first = np.argmin([far for far, _ in found], axis=0)
+        faces = self._numbered([face for _, face in found])
+        return _chosen(first, [far for far, _ in found]), _chosen(first, faces)
+
+    def _numbered(self, faces: list[Int]) -> list[Int]:
+        """(k,) the faces of each shell, −1 for none, as those of the mesh."""
+        each = zip(self._owner, faces, strict=True)
+        return [np.where(face >= 0, owner[face], -1) for owner, face in each]
+
+
+def _chosen(which: Int, among: list[Rows]) -> Rows:
+    """For each of (k,) the row of one of several arrays of k rows."""
+    result = among[0].copy()
+    for number, rows in enumerate(among[1:], 1):
+        chosen = which == number
+        result[chosen] = rows[chosen]
+    return result
+
+
 @dataclass(frozen=True, eq=False)
 class _Pieces:
     """Triangles, the long ones in pieces.
@@ -229,4 +312,4 @@ def _along_curve(points: Float) -> Int:
 _MOST_TREES = 8
 _MOST_FACES = 5_200_000
 _KEPT: dict[bytes, SurfaceTree] = {}
-_ONE_AT_A_TIME = threading.Lock()
+_ONE_AT_A_TIME = threading.RLock()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from printprep.mesh.measure import area_normals
 from printprep.mesh.shell_figures import shell_figures
 from printprep.render.raster import coverage, rasterize
 from printprep.render.shading import blur, camera, corner_normals, dot, normalized, shaded, to_srgb
@@ -74,14 +75,28 @@ def _render(vertices: Float, faces: Int, size: int) -> Float:
     shade = blur(shadow, round(_SHADOW_BLUR * size)) * _SHADOW
     image[:, 3] = shade.ravel()
 
-    normals, smooth = corner_normals(vertices, faces)
-    seen = np.flatnonzero(dot(normals, eye) > 0.0)
+    seen = np.flatnonzero(dot(normalized(area_normals(vertices[faces])), eye) > 0.0)
     depth = dot(vertices, eye)
     hits = rasterize(flat[faces[seen]], depth[faces[seen]], size)
-    normal = (smooth[seen[hits.triangle]] * hits.weights[:, :, None]).sum(axis=1)
+    shown, which = np.unique(seen[hits.triangle], return_inverse=True)
+    smooth = _corner_normals_of(shown, vertices, faces)
+    normal = (smooth[which] * hits.weights[:, :, None]).sum(axis=1)
     image[hits.pixel, :3] = shaded(normalized(normal), eye, _COLOUR)
     image[hits.pixel, 3] = 1.0
     return image.reshape(size, size, 4)
+
+
+def _corner_normals_of(shown: Int, vertices: Float, faces: Int) -> Float:
+    """(k, 3, 3) the corner normals of the faces shown (k,), of vertices (n, 3) and faces (m, 3).
+
+    Only faces that share a corner with these matter: of a fine mesh, few have a pixel.
+    """
+    corners = np.zeros(len(vertices), dtype=bool)
+    corners[faces[shown]] = True
+    around = np.flatnonzero(corners[faces].any(axis=1))
+    _, smooth = corner_normals(vertices, faces[around])
+    result: Float = smooth[np.searchsorted(around, shown)]
+    return result
 
 
 def _png(picture: np.ndarray[tuple[int, ...], np.dtype[np.uint8]]) -> bytes:

@@ -13,6 +13,7 @@ from manifold3d import Manifold
 from printprep.mesh import aabb_tree
 from printprep.mesh.aabb_tree import SurfaceTree, tree_of
 from printprep.mesh.measure import arrays
+from printprep.mesh.quantize import quantized_arrays
 
 
 def ball(radius: float = 10.0) -> tuple[np.ndarray, np.ndarray]:
@@ -128,3 +129,45 @@ def test_few_trees_are_kept_however_small() -> None:
     for number in range(3 * aabb_tree._MOST_TREES):
         tree_of(np.eye(3) + number, faces)
     assert len(aabb_tree._KEPT) == aabb_tree._MOST_TREES
+
+
+@examples(20)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3))
+def test_trees_of_shells_answer_like_one_tree(seed: int, voids: int) -> None:
+    rng = np.random.default_rng(seed)
+    solid = Manifold.sphere(10, 40)
+    for number in range(voids):
+        hole = Manifold.cube((1.2, 1.2, 1.2)).rotate(rng.uniform(0, 90, 3).tolist())
+        solid -= hole.translate([5.0 * number - 5.0, -1, -1])
+    vertices, faces = arrays(solid)
+    one = SurfaceTree(vertices, faces)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(aabb_tree, "MANY_FACES", 0)
+        several = tree_of(vertices, faces)
+    assert isinstance(several, aabb_tree._ShellTrees) and len(several._shells) == voids + 1
+    points = rng.uniform(-12, 12, (300, 3))
+    along = rng.normal(size=(300, 3))
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    distance, place, face = several.nearest_faces(points)
+    assert distance == pytest.approx(one.nearest(points)[0], rel=1e-12, abs=1e-12)
+    assert np.linalg.norm(place - points, axis=1) == pytest.approx(distance, rel=1e-9)
+    corners = vertices[faces[face]]
+    near = trimesh.triangles.closest_point(corners, points)
+    assert np.linalg.norm(near - points, axis=1) == pytest.approx(distance, rel=1e-9, abs=1e-9)
+    for ask in ("first_hit", "first_hit_exactly"):
+        far, met = getattr(several, ask)(points, along)
+        expected, expected_met = getattr(one, ask)(points, along)
+        assert (met == expected_met).mean() > 0.98  # a ray may pass between two triangles
+        assert np.allclose(far[met == expected_met], expected[met == expected_met], atol=1e-6)
+    within = rng.uniform(0, 20, 300)
+    assert (several.may_hit(points, along, within) == one.may_hit(points, along, within)).all()
+
+
+def test_the_tree_of_a_shell_serves_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(aabb_tree, "MANY_FACES", 1000)
+    outside = Manifold.sphere(10, 64)
+    part = outside - Manifold.sphere(5, 64)
+    alone = tree_of(*quantized_arrays(outside))
+    together = tree_of(*quantized_arrays(part))
+    assert isinstance(together, aabb_tree._ShellTrees)
+    assert any(shell is alone for shell in together._shells)
