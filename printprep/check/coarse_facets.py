@@ -10,6 +10,7 @@ import numpy as np
 from printprep.check.catalogue import finding
 from printprep.check.registry import rule
 from printprep.mesh.measure import area_normals, arrays
+from printprep.mesh.weld import opposite_edges
 from printprep.types import Finding
 
 if TYPE_CHECKING:
@@ -64,11 +65,10 @@ def _deviations(vertices: Float, faces: Int) -> tuple[Float, Float, Int]:
     normals = area_normals(corners)
     doubled = np.linalg.norm(normals, axis=1)
     unit = normals / np.maximum(doubled, np.finfo(np.float64).tiny)[:, None]
-    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    owner = np.repeat(np.arange(len(faces)), 3)
-    order = np.argsort(np.minimum(start, end) * len(vertices) + np.maximum(start, end))
-    a, b = owner[order][::2], owner[order][1::2]
-    length = np.linalg.norm(vertices[end] - vertices[start], axis=1)[order][::2]
+    edge, opposite = opposite_edges(faces)
+    a, b = edge // 3, opposite // 3
+    start, end = faces[a, edge % 3], faces[a, (edge + 1) % 3]
+    length = np.linalg.norm(vertices[end] - vertices[start], axis=1)
     bend = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", unit[a], unit[b]), -1, 1)))
     width = (doubled[a] + doubled[b]) / (2 * np.maximum(length, np.finfo(np.float64).tiny))
     round_ = (bend > _FLATTEST_DEG) & (bend < _SHARPEST_DEG)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from printprep.errors import GeometryError
-from printprep.kept import kept, read_only
+from printprep.kept import kept
 from printprep.types import MassProperties
 
 if TYPE_CHECKING:
@@ -35,19 +35,8 @@ _STATUS = {
 }
 
 
-@kept(most=2)
 def arrays(manifold: Manifold) -> tuple[Float, Int]:
-    """Vertices (n, 3) float64 mm and faces (m, 3) int64, counter-clockwise seen from outside.
-
-    They are read-only.
-    """
-    found = _arrays(manifold)
-    read_only(*found)
-    return found
-
-
-def _arrays(manifold: Manifold) -> tuple[Float, Int]:
-    """Vertices (n, 3) and faces (m, 3), as :func:`arrays` gives them, anew."""
+    """Vertices (n, 3) float64 mm and faces (m, 3) int64, counter-clockwise seen from outside."""
     mesh = manifold.to_mesh64()
     vertices = np.ascontiguousarray(mesh.vert_properties[:, :3], dtype=np.float64)
     faces = np.asarray(mesh.tri_verts).astype(np.int64)
@@ -219,6 +208,8 @@ def shells(manifold: Manifold) -> tuple[tuple[Manifold, ...], tuple[Manifold, ..
     All are returned as solids of positive volume: the voids are turned inside out.
     """
     parts = manifold.decompose()
+    if len(parts) == 1 and parts[0].volume() >= 0:
+        return (manifold,), ()  # the copy of a large solid takes as much memory again
     solids = tuple(part for part in parts if part.volume() >= 0)
     voids = tuple(inverted(part) for part in parts if part.volume() < 0)
     return solids, voids

@@ -32,6 +32,8 @@ _RINGS = 2
 _FLAT = 0.1
 # After a hit on a triangle that shares a corner with the edge the ray goes on, this many times.
 _ROUNDS = 3
+# So many edges are cast as rays at once, to bound the memory.
+_BLOCK = 1 << 18
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,18 +64,19 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
     vertices : (n, 3), x, y, z in mm;  faces : (m, 3).
     """
     surface = tree_of(vertices, faces)
-    every = np.sort(directed_edges(faces), axis=1)
-    first, same = unique_keys(every[:, 0] * len(vertices) + every[:, 1])
-    edges = every[first]
+    edges, first, same = _edges(faces, len(vertices))
     along = vertices[edges[:, 1]] - vertices[edges[:, 0]]
     length = np.linalg.norm(along, axis=1)
     touch = _TOUCH * float(np.ptp(vertices, axis=0).max())
     going = np.flatnonzero(length > 3 * touch)
-    away = touch * _away(vertices, faces, first, same)[going]
-    unit, starts = along[going] / length[going, None], vertices[edges[going, 0]]
-    met = surface.may_hit(starts + away, unit, length[going])
-    met |= surface.may_hit(starts - away, unit, length[going])
-    going = going[met]
+    away = touch * _away(vertices, faces, first, same)
+    met = np.zeros(len(edges), dtype=bool)
+    for begin in range(0, len(going), _BLOCK):
+        some = going[begin : begin + _BLOCK]
+        unit, starts = along[some] / length[some, None], vertices[edges[some, 0]]
+        for side in (away[some], -away[some]):
+            met[some] |= surface.may_hit(starts + side, unit, length[some])
+    going = going[met[going]]
     done = np.full(len(edges), touch)
     hit = np.full(len(edges), -1, dtype=np.int64)
     for _ in range(_ROUNDS):
@@ -107,6 +110,16 @@ def self_intersections(vertices: Float, faces: Int) -> SelfIntersections:
         at_mm=at,
         apart=piece[edges[found, 0]] != piece[faces[hit[found], 0]],
     )
+
+
+def _edges(faces: Int, vertex_count: int) -> tuple[Int, Int, Int]:
+    """(e, 2) the edges of faces (m, 3), (e,) the first directed edge of each, (3m,) which each is.
+
+    The smaller vertex of an edge is first.
+    """
+    every = np.sort(directed_edges(faces), axis=1)
+    first, same = unique_keys(every[:, 0] * vertex_count + every[:, 1])
+    return every[first], first, same
 
 
 def _away(vertices: Float, faces: Int, first: Int, same: Int) -> Float:

@@ -47,7 +47,7 @@ class ShellFigures:
         return result
 
 
-@kept(most=2)
+@kept(most=1)
 def shell_figures(vertices: Float, faces: Int) -> ShellFigures:
     """Measure the shells of vertices (n, 3) mm and faces (m, 3)."""
     a, b, c = faces.T

@@ -43,7 +43,7 @@ def check_sound(part: Part, drains: tuple[Drain, ...]) -> None:
 
 
 def _check_loose(part: Part) -> None:
-    vertices, faces = arrays(part.manifold)
+    vertices, faces = quantized_arrays(part.manifold)
     figures = shell_figures(vertices, faces)
     solids = np.flatnonzero(figures.volume_mm3 > 0).tolist()
     if len(solids) <= 1:
