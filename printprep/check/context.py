@@ -67,6 +67,14 @@ class CheckContext:
         return x1 - x0, y1 - y0, z1 - z0
 
     @property
+    def solids(self) -> tuple[Manifold, ...]:
+        """All solids that rules look at."""
+        walled = [solid for pair in self.walls for solid in (pair.outside, *pair.cavities)]
+        blocker = () if self.blocker is None else (self.blocker,)
+        own = (self.part, self.outside, *self.cavities, *self.drained)
+        return (*own, *blocker, *walled)
+
+    @property
     def wall(self) -> Wall | None:
         """The thinnest wall between cavities and outside, None without a cavity."""
         return self._measured.get("wall", self._wall)

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from printprep.check.catalogue import CATALOGUE
+from printprep.mesh.measure import evaluate
 from printprep.side_by_side import side_by_side
 from printprep.types import Finding, Severity
 
@@ -44,6 +45,7 @@ def rule(rule_id: str) -> Callable[[Rule], Rule]:
 
 def run_rules(context: CheckContext, profile: Profile) -> tuple[Finding, ...]:
     """The findings of all rules: the worst first, then by rule id, then in the rule's order."""
+    evaluate(context.solids)
     dearest_first = sorted(RULES, key=lambda rule_id: (rule_id not in _DEAR, rule_id))
     found = side_by_side([partial(_found, RULES[k], context, profile) for k in dearest_first])
     by_rule = dict(zip(dearest_first, found, strict=True))

@@ -17,7 +17,7 @@ from printprep.kept import kept
 from printprep.types import MassProperties
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from manifold3d import Manifold
 
@@ -46,6 +46,15 @@ def arrays(manifold: Manifold) -> tuple[Float, Int]:
         used, index = np.unique(joined[faces], return_inverse=True)
         return vertices[used], index.reshape(-1, 3).astype(np.int64)
     return vertices, faces
+
+
+def evaluate(manifolds: Iterable[Manifold]) -> None:
+    """Let the kernel finish solids now, before several threads ask for them.
+
+    It puts work off until it is asked, and does not expect to be asked twice at once.
+    """
+    for manifold in manifolds:
+        manifold.num_tri()
 
 
 def try_manifold(vertices: Float, faces: Int) -> tuple[Manifold, str]:

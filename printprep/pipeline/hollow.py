@@ -48,6 +48,7 @@ def hollow_with(
     """
     from printprep.check import run_rules, sorted_findings
     from printprep.check.reading import reading_findings
+    from printprep.mesh.measure import evaluate
     from printprep.pipeline.alternative_fill import alternative_fill
     from printprep.pipeline.prepare import prepare
     from printprep.pipeline.soundness import check_sound
@@ -71,6 +72,7 @@ def hollow_with(
     advice = advise(prepared, filled, lean, clock)
     with clock.stage("check"):
         context = context_of(prepared, filled, lean, advice)
+        evaluate((filled.part.manifold, filled.part.outside, *filled.part.cavities))
         sound = partial(check_sound, filled.part, drains)
         checked: list[Any] = side_by_side([sound, partial(run_rules, context, filled.profile)])
         rule_findings: tuple[Finding, ...] = checked[1]
