@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 # Fits to the peak resident memory of whole runs, from above: see docs/cluster.md.
 BASE_MIB = 560.0
-MIB_PER_1000_TRIANGLES = 1.8
+MIB_PER_1000_TRIANGLES = 2.5
 MIB_PER_MILLION_VOXELS = 210.0
 # A triangle takes at least so many bytes of a file: binary STL has 50, text has more, a zip less.
 BYTES_PER_TRIANGLE = {".3mf": 6.0, ".glb": 12.0, ".npz": 1e9, ".npy": 1e9, ".pt": 1e9}

@@ -22,7 +22,7 @@ MOST_BEDS = 10.0
 # with its share of the part, a voxel of the optimization, a cell of the finer grid at the wall, and
 # the grids on which holes are placed and pools found, which are bounded by themselves.
 BASE_MIB = 420.0
-TRIANGLE_BYTES = 1900.0
+TRIANGLE_BYTES = 2500.0
 VOXEL_BYTES = 220.0
 FINE_BYTES = 12.0
 FINE_CELLS_PER_WALL, MOST_FINE_CELLS = 3.0, 384.0
