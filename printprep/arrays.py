@@ -24,6 +24,7 @@ def stable_order(keys: Int) -> Int:
 
     Key and place are sorted as one number, where both fit into one.
     """
+    keys = keys.astype(np.int64, copy=False)
     place_bits = len(keys).bit_length()
     if not len(keys) or int(keys.max()).bit_length() + place_bits > 63:
         return np.argsort(keys, kind="stable")

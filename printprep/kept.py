@@ -1,7 +1,7 @@
 """Keeps what was found for the last few solids: many rooms ask the same of one.
 
 A result is kept by the identity of what it was found for, which therefore must not change: a
-manifold, or arrays that are read-only.
+manifold, or arrays that are read-only and own what they hold.
 """
 
 from __future__ import annotations
@@ -35,6 +35,10 @@ class _Entry:
                 self._found.append(find())
         return self._found[0]
 
+    @property
+    def is_found(self) -> bool:
+        return bool(self._found)
+
 
 class Once:
     """Results by name, each found once, whichever thread asks first."""
@@ -66,19 +70,16 @@ class Keeping(Generic[Asked, Found]):
         update_wrapper(self, function)
 
     def __call__(self, *objects: Asked.args, **named: Asked.kwargs) -> Found:
-        if named or any(isinstance(each, np.ndarray) and each.flags.writeable for each in objects):
+        if named or any(isinstance(each, np.ndarray) and may_change(each) for each in objects):
             return self._function(*objects, **named)
         find = partial(self._function, *objects, **named)
         result: Found = self._entry(objects).result(find)
         return result
 
     def known(self, *objects: object) -> bool:
-        """Whether the result for some objects is kept, or is just being found."""
-        return tuple(id(each) for each in objects) in self._last
-
-    def keep(self, result: Found, *objects: object) -> None:
-        """Keep a result that is known without asking."""
-        self._entry(objects).result(lambda: result)
+        """Whether the result for some objects is kept."""
+        entry = self._last.get(tuple(id(each) for each in objects))
+        return entry is not None and entry.is_found
 
     def _entry(self, objects: tuple[object, ...]) -> _Entry:
         key = tuple(id(each) for each in objects)
@@ -93,6 +94,11 @@ class Keeping(Generic[Asked, Found]):
 def kept(most: int) -> Callable[[Callable[Asked, Found]], Keeping[Asked, Found]]:
     """A function that keeps its results for the last ``most`` things that it was asked of."""
     return lambda function: Keeping(function, most)
+
+
+def may_change(array: np.ndarray[Any, Any]) -> bool:
+    """Whether the numbers of an array can change: it is writeable, or a view of another one."""
+    return array.flags.writeable or not array.flags.owndata
 
 
 def read_only(*arrays: np.ndarray[Any, Any]) -> None:

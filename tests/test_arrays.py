@@ -23,6 +23,13 @@ def test_so_is_that_of_values_of_any_size(keys: np.ndarray) -> None:
     assert stable_order(keys).tolist() == np.argsort(keys, kind="stable").tolist()
 
 
+def test_small_types_do_not_overflow() -> None:
+    for kind in (np.int32, np.uint32, np.uint64):
+        keys = np.array([5, 3, 70000, 5, 2**30], dtype=kind)
+        assert stable_order(keys).tolist() == [1, 0, 3, 2, 4]
+        assert unique_keys(keys)[0].tolist() == [1, 0, 2, 4]
+
+
 @given(
     arrays(
         np.int64,

@@ -26,16 +26,6 @@ def test_the_last_few_results_are_kept() -> None:
     assert (named(two), named(one)) == ("result 2", "result 4")
 
 
-def test_a_result_can_be_kept_unasked() -> None:
-    @kept(most=2)
-    def named(thing: object) -> str:
-        raise AssertionError("asked")
-
-    thing = object()
-    named.keep("known", thing)
-    assert named(thing) == "known"
-
-
 def test_arrays_that_may_change_are_asked_anew() -> None:
     @kept(most=2)
     def total(array: np.ndarray) -> float:
@@ -64,7 +54,22 @@ def test_an_error_is_not_kept() -> None:
     thing = object()
     with pytest.raises(ValueError, match="first"):
         result(thing)
+    assert not result.known(thing)
     assert result(thing) == "second"
+    assert result.known(thing)
+
+
+def test_a_view_of_what_may_change_is_asked_anew() -> None:
+    @kept(most=2)
+    def total(array: np.ndarray) -> float:
+        return float(array.sum())
+
+    whole = np.ones(6)
+    view = whole[:3]
+    read_only(view)
+    assert total(view) == 3.0
+    whole += 1.0
+    assert total(view) == 6.0
 
 
 def test_two_threads_that_ask_the_same_find_it_once() -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from contextvars import ContextVar
 
-import numpy as np
 import pytest
 
 from printprep import side_by_side as module
@@ -82,13 +82,53 @@ def test_an_interruption_ends_the_work() -> None:
     assert len(begun) < 20
 
 
-def test_what_numpy_is_told_holds_in_every_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_context_variables_hold_in_every_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "processors", lambda: 2)
     both = threading.Barrier(2, timeout=20)
+    variable: ContextVar[str] = ContextVar("variable", default="unset")
+    variable.set("set")
 
     def piece() -> str:
         both.wait()
-        return str(np.geterr()["divide"])
+        return variable.get()
 
-    with np.errstate(divide="raise"):
-        assert side_by_side([piece, piece]) == ["raise", "raise"]
+    assert side_by_side([piece, piece]) == ["set", "set"]
+
+
+def test_whatever_ends_another_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "processors", lambda: 2)
+    here = threading.current_thread()
+    both = threading.Barrier(2, timeout=20)
+
+    def piece() -> None:
+        both.wait()
+        if threading.current_thread() is not here:
+            raise SystemExit(3)
+
+    with pytest.raises(SystemExit):
+        side_by_side([piece, piece])
+
+
+@pytest.mark.parametrize("ends", [KeyboardInterrupt, ValueError])
+def test_a_crew_within_another_one_ends_with_it(
+    ends: type[BaseException], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "processors", lambda: 2)
+    begun: list[int] = []
+
+    def inner(number: int) -> None:
+        begun.append(number)
+        time.sleep(0.02)
+
+    def fails() -> None:
+        while not begun:
+            time.sleep(0.001)
+        raise ends
+
+    def many() -> None:
+        side_by_side([lambda k=k: inner(k) for k in range(200)])
+
+    with pytest.raises(ends):
+        side_by_side([many, fails] if ends is ValueError else [fails, many])
+    time.sleep(0.2)
+    assert len(begun) < 30

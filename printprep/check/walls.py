@@ -72,7 +72,8 @@ def _nearest(of: tuple[Float, Int], to: tuple[Float, Int]) -> tuple[float, Float
     """
     vertices, faces = of
     a, b, c = (vertices[corner] for corner in faces.T)
-    large = (((a - b) ** 2).sum(axis=1) > SMALL_MM**2) | (((c - b) ** 2).sum(axis=1) > SMALL_MM**2)
+    longest = np.maximum.reduce([((p - q) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))])
+    large = longest > SMALL_MM**2
     points = np.concatenate([vertices, (a + b + c)[large] / 3])
     distance, nearest = tree_of(*to).nearest(points)
     least = int(np.argmin(distance))

@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from printprep.arrays import stable_order
+from printprep.kept import may_change
 from printprep.mesh.measure import area_normals
 from printprep.mesh.weld import connected
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import TypeVar
 
     from printprep.arrays import Bool, Float, Int
@@ -51,11 +53,15 @@ def tree_of(vertices: Float, faces: Int) -> SurfaceTree:
         # mesh.
         found = _KEPT.pop(key, None) or _grown(_unchanging(vertices), _unchanging(faces))
         _KEPT[key] = found  # the last used are at the end
-        while len(_KEPT) > _MOST_TREES or (
-            len(_KEPT) > 1 and sum(tree.size for tree in _KEPT.values()) > _MOST_FACES
-        ):
+        while len(_KEPT) > _MOST_TREES or (len(_KEPT) > 1 and _held_faces() > _MOST_FACES):
             del _KEPT[next(iter(_KEPT))]
     return found
+
+
+def _held_faces() -> int:
+    """The triangles of all trees that are kept; trees of shells may be held by several."""
+    held = {id(tree): tree for kept in _KEPT.values() for tree in kept.trees}
+    return sum(len(tree.faces) for tree in held.values())
 
 
 def _grown(vertices: Float, faces: Int) -> SurfaceTree:
@@ -81,7 +87,7 @@ def _grown(vertices: Float, faces: Int) -> SurfaceTree:
 
 def _unchanging(array: Rows) -> Rows:
     """An array that may change as a copy."""
-    return array.copy() if array.flags.writeable else array
+    return array.copy() if may_change(array) else array
 
 
 class SurfaceTree:
@@ -101,9 +107,9 @@ class SurfaceTree:
         self._beyond_mm = 1e-6 * float(np.ptp(vertices, axis=0).max())
 
     @property
-    def size(self) -> int:
-        """How many triangles it holds."""
-        return len(self.faces)
+    def trees(self) -> Sequence[SurfaceTree]:
+        """The trees that it consists of."""
+        return (self,)
 
     def nearest(self, points: Float) -> tuple[Float, Float]:
         """(k,) exact distances of points (k, 3) mm, and (k, 3) the nearest points of the mesh."""
@@ -197,8 +203,8 @@ class _ShellTrees(SurfaceTree):
         self._shells, self._owner = shells, owner
 
     @property
-    def size(self) -> int:
-        return 0  # the trees of the shells are kept by themselves
+    def trees(self) -> Sequence[SurfaceTree]:
+        return self._shells
 
     def nearest_faces(self, points: Float) -> tuple[Float, Float, Int]:
         found = [shell.nearest_faces(points) for shell in self._shells]

@@ -1,7 +1,8 @@
 """The exact least distance between the surface of a solid and that of another one in it.
 
-Notation: the distance is least between p on a face of the outside and c on the inside; v is the
-corner of that face next to p, L its longest edge.
+Notation: the distance is least between p on a face of the outside and c on the inside; L is the
+longest edge of that face, and v its corner nearest to p, or where p lies on an edge the nearer end
+of that edge.
 
 Then c − p is at right angles to the face where p lies within it, and to the edge where p lies on
 one, so |v − c|² = |p − c|² + |v − p|², and |v − p|² ≤ L²/3.  Only faces with a corner whose
@@ -33,7 +34,7 @@ def gap_mm(outside: Manifold, inside: Manifold, at_most_mm: float) -> float:
 
     at_most_mm : a greater distance is reported as this.  It is 0 where one breaks through.
     """
-    if outside.num_tri() <= MANY:
+    if inside.is_empty() or outside.num_tri() <= MANY:
         beyond = _everything_beyond(outside)
         return float(beyond.min_gap(inside, at_most_mm))
     if not (inside - outside).is_empty():

@@ -127,15 +127,11 @@ def crowded_edges(faces: Int) -> Int:
 def _rebuilt(vertices: Float, faces: Int) -> Manifold:
     """The manifold of rounded vertices (n, 3) mm and faces (m, 3)."""
     try:
-        rebuilt = from_arrays(vertices, faces)
+        return from_arrays(vertices, faces)
     except GeometryError as error:
         raise GeometryError(
             f"The part breaks when its coordinates are rounded for a file: {error.message}", _NUDGE
         ) from error
-    if rebuilt.num_tri() == len(faces):
-        read_only(vertices, faces)
-        quantized_arrays.keep((vertices, faces), rebuilt)
-    return rebuilt
 
 
 def _without_flat_shells(manifold: Manifold) -> Manifold:

@@ -27,6 +27,7 @@ def test_a_box_in_a_box(finer: int) -> None:
     assert gap_mm(outside, _box(1.5, 17), 5.0) == pytest.approx(1.5, abs=2e-6)
     assert gap_mm(outside, _box(1.5, 17), 1.0) == 1.0
     assert gap_mm(outside, _box(6, 14), 5.0) == 5.0
+    assert gap_mm(outside, Manifold(), 5.0) == 5.0
 
 
 @pytest.mark.usefixtures("_measured")
