@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 
     from printprep.arrays import Float, Int
 
-# Of outsides with more triangles, only those that can be nearest are measured.
+# Of outsides with more triangles, only those that can be nearest are measured, where these are at
+# most this share of all.
 MANY = 50_000
+FEW_SHARE = 0.1
 # They are measured as tetrahedra, this high toward the side that the inside is not on.
 _HEIGHT_MM = 1e-6
 
@@ -34,13 +36,14 @@ def gap_mm(outside: Manifold, inside: Manifold, at_most_mm: float) -> float:
 
     at_most_mm : a greater distance is reported as this.  It is 0 where one breaks through.
     """
-    if inside.is_empty() or outside.num_tri() <= MANY:
-        beyond = _everything_beyond(outside)
-        return float(beyond.min_gap(inside, at_most_mm))
+    vertices, faces = arrays(outside)
+    nearest = faces
+    if len(faces) > MANY and not inside.is_empty():
+        nearest = _that_can_be_nearest(vertices, faces, inside, at_most_mm)
+    if len(nearest) > FEW_SHARE * len(faces):
+        return float(_everything_beyond(outside).min_gap(inside, at_most_mm))
     if not (inside - outside).is_empty():
         return 0.0
-    vertices, faces = arrays(outside)
-    nearest = _that_can_be_nearest(vertices, faces, inside, at_most_mm)
     if not len(nearest):
         return at_most_mm
     return float(_thin_tetrahedra(vertices[nearest]).min_gap(inside, at_most_mm))

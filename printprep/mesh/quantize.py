@@ -52,18 +52,19 @@ def quantized(manifold: Manifold) -> Manifold:
     # What is not rounded yet is used here alone
     once = quantized_arrays if quantized_arrays.known(manifold) else _quantized_arrays
     vertices, faces = once(manifold)
-    if not len(crowded_edges(faces)):
+    crowded = crowded_edges(faces)
+    if not len(crowded):
         same = _is_rounded(manifold, len(vertices), len(faces))
         return _without_flat_shells(manifold if same else _rebuilt(vertices, faces))
     reason = "it still touches itself"
-    near = _apart_at_crowded_edges(manifold)
+    near = _apart_at(manifold, vertices[np.unique(crowded)])
     if near is not None:
         return _without_flat_shells(near)
     apart, folds = manifold, None
     for tolerance_mm in _MERGED_MM:
         # Welding the ends of an edge shorter than a float32 step folds triangles over.
         apart = _moved_apart(apart.simplify(tolerance_mm) if tolerance_mm else apart)
-        vertices, faces = quantized_arrays(apart)
+        vertices, faces = _quantized_arrays(apart)
         if len(crowded_edges(faces)):
             continue
         found = _rebuilt(vertices, faces)
@@ -118,10 +119,14 @@ def crowded_edges(faces: Int) -> Int:
     if is_closed(faces, once=True):
         return np.zeros((0, 2), dtype=np.int64)
     size = int(faces.max()) + 1
-    keys, counts = np.unique(directed_edges(faces) @ np.array([size, 1]), return_counts=True)
-    start, end = np.divmod(keys, size)
-    bad = (counts != 1) | ~np.isin(end * size + start, keys)
-    return np.stack([start[bad], end[bad]], axis=1)
+    start, end = directed_edges(faces).T
+    there, back = np.sort(start * size + end), np.sort(end * size + start)
+    repeated = there[1:][there[1:] == there[:-1]]
+    # There and back are the same numbers where each edge has an opposite
+    place = np.minimum(np.searchsorted(there, back), len(there) - 1)
+    last, first = np.divmod(back[there[place] != back], size)
+    keys = np.unique(np.concatenate([repeated, first * size + last]))
+    return np.stack(np.divmod(keys, size), axis=1)
 
 
 def _rebuilt(vertices: Float, faces: Int) -> Manifold:
@@ -147,20 +152,21 @@ def _is_flat(shell: Manifold) -> bool:
     return bool(volume < _FLAT_SHELL_MM3 and 2 * volume < _FLAT_SHELL_MM * area)
 
 
-def _apart_at_crowded_edges(manifold: Manifold) -> Manifold | None:
+def _apart_at(manifold: Manifold, at: Float) -> Manifold | None:
     """The manifold moved apart only where edges are crowded, the gentlest way; None where it fails.
 
-    Elsewhere surfaces may touch in a point: moved apart there, they could begin to touch along an
-    edge beside it.
+    at : (k, 3) mm, the ends of its crowded edges.  Elsewhere surfaces may touch in a point: moved
+    apart there, they could begin to touch along an edge beside it.
     """
     apart = manifold
     for _ in range(_MOST_ROUNDS):
-        vertices, faces = quantized_arrays(apart)
-        apart = _moved_apart(apart, vertices[np.unique(crowded_edges(faces))])
-        vertices, faces = quantized_arrays(apart)
-        if not len(crowded_edges(faces)):
+        apart = _moved_apart(apart, at)
+        vertices, faces = _quantized_arrays(apart)
+        crowded = crowded_edges(faces)
+        if not len(crowded):
             found = _rebuilt(vertices, faces)
             return found if unfaithful(manifold, found, _MOVED_MM) is None else None
+        at = vertices[np.unique(crowded)]
     return None
 
 

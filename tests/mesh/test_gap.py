@@ -14,6 +14,7 @@ from printprep.mesh.gap import gap_mm
 def _measured(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """All triangles of the outside are measured, or those that can be nearest."""
     monkeypatch.setattr(gap, "MANY", 0 if request.param == "some" else 10**9)
+    monkeypatch.setattr(gap, "FEW_SHARE", 0.999)
 
 
 def _box(low: float, high: float) -> Manifold:
@@ -61,6 +62,8 @@ def test_both_ways_agree_on_random_solids(seed: int, monkeypatch: pytest.MonkeyP
     inside = inside.translate(rng.uniform(-0.9, 0.9, 3).tolist())
     for at_most_mm in (0.5, 1.5, 4.0):
         monkeypatch.setattr(gap, "MANY", 10**9)
+        monkeypatch.setattr(gap, "FEW_SHARE", 0.999)
         whole = gap_mm(outside, inside, at_most_mm)
         monkeypatch.setattr(gap, "MANY", 0)
+        monkeypatch.setattr(gap, "FEW_SHARE", 1.0)
         assert gap_mm(outside, inside, at_most_mm) == pytest.approx(whole, abs=2e-6)
