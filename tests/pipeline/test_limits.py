@@ -82,9 +82,10 @@ def test_both_sides_of_the_size_limits() -> None:
 @pytest.mark.parametrize(
     ("triangles", "size", "resolution", "measured"),
     [
-        (6000, (60, 80, 100), 64, 506),
-        (6000, (60, 80, 100), 128, 710),
-        (423_000, (80, 80, 80), 64, 950),
+        (70_000, (48, 73, 100), 64, 491),
+        (1_120_000, (48, 73, 100), 64, 3079),
+        (423_424, (52, 99, 100), 64, 1393),
+        (1_693_696, (52, 99, 100), 64, 4527),
     ],
 )
 def test_the_estimate_of_memory_holds_and_is_not_idle(
