@@ -12,6 +12,13 @@ from functools import cache
 from pathlib import Path
 
 
+def usable_processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 @cache
 def bind(slot: int, slots: int) -> int:
     """Bind this process to its share of the processors; returns how many those are.
@@ -21,7 +28,7 @@ def bind(slot: int, slots: int) -> int:
     done.
     """
     if not hasattr(os, "sched_setaffinity"):
-        return os.cpu_count() or 1
+        return usable_processors()
     here = sorted(os.sched_getaffinity(0))
     each = max(1, len(here) // slots)
     first = (slot * each) % len(here)

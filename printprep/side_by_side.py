@@ -3,24 +3,21 @@
 It pays for what lets other threads go on meanwhile: numpy's sorts and sums of large arrays,
 manifold3d's booleans, zlib.  What a piece returns may not depend on when it runs: the results are
 those of one after another.
+
+A ThreadPoolExecutor would go on with the work of a crew within a crew after a signal or an error,
+and the interpreter waits for its threads at the end.
 """
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar, copy_context
 from typing import Any, Generic, TypeVar
 
+from printprep.processors import usable_processors
+
 Result = TypeVar("Result")
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def side_by_side(work: Sequence[Callable[[], Result]]) -> list[Result]:
@@ -29,12 +26,12 @@ def side_by_side(work: Sequence[Callable[[], Result]]) -> list[Result]:
     Where one raises an error, no more begin, and the error of the first one in the order is raised.
     A signal, which interrupts this thread, also lets no more begin.
     """
-    if len(work) <= 1 or processors() <= 1:
+    if len(work) <= 1 or usable_processors() <= 1:
         return [each() for each in work]
     crew = _Crew(work, _CREW.get())
     threads = [
         threading.Thread(target=copy_context().run, args=(crew.work_apart,), daemon=True)
-        for _ in range(min(processors(), len(work)) - 1)
+        for _ in range(min(usable_processors(), len(work)) - 1)
     ]
     try:
         for thread in threads:

@@ -36,7 +36,12 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("printprep.profile_import", "printprep.profile_new"),
     ("printprep.threemf", "printprep.profiles", "printprep.bgcode"),
     ("printprep.profile_schema", "printprep.types", "printprep.files", "printprep.pool"),
-    ("printprep.input_file", "printprep.mislabelled", "printprep.profile_folders"),
+    (
+        "printprep.input_file",
+        "printprep.mislabelled",
+        "printprep.profile_folders",
+        "printprep.side_by_side",
+    ),
     (
         "printprep.arrays",
         "printprep.children",
@@ -46,7 +51,6 @@ FLOORS: tuple[tuple[str, ...], ...] = (
         "printprep.process",
         "printprep.processors",
         "printprep.progress",
-        "printprep.side_by_side",
         "printprep.version",
         "printprep.wording",
     ),

@@ -15,7 +15,7 @@ from printprep.side_by_side import side_by_side
 @pytest.fixture(params=[1, 2, 3])
 def processors(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
     count: int = request.param
-    monkeypatch.setattr(module, "processors", lambda: count)
+    monkeypatch.setattr(module, "usable_processors", lambda: count)
     return count
 
 
@@ -30,13 +30,13 @@ def test_results_are_in_the_order_of_the_work(count: int) -> None:
 
 
 def test_two_pieces_run_at_one_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "processors", lambda: 2)
+    monkeypatch.setattr(module, "usable_processors", lambda: 2)
     both = threading.Barrier(2, timeout=20)
     assert sorted(side_by_side([both.wait, both.wait])) == [0, 1]
 
 
 def test_on_one_processor_there_is_no_other_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "processors", lambda: 1)
+    monkeypatch.setattr(module, "usable_processors", lambda: 1)
     here = threading.current_thread()
     assert side_by_side([threading.current_thread] * 3) == [here] * 3
 
@@ -83,7 +83,7 @@ def test_an_interruption_ends_the_work() -> None:
 
 
 def test_context_variables_hold_in_every_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "processors", lambda: 2)
+    monkeypatch.setattr(module, "usable_processors", lambda: 2)
     both = threading.Barrier(2, timeout=20)
     variable: ContextVar[str] = ContextVar("variable", default="unset")
     variable.set("set")
@@ -96,7 +96,7 @@ def test_context_variables_hold_in_every_thread(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_whatever_ends_another_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "processors", lambda: 2)
+    monkeypatch.setattr(module, "usable_processors", lambda: 2)
     here = threading.current_thread()
     both = threading.Barrier(2, timeout=20)
 
@@ -113,7 +113,7 @@ def test_whatever_ends_another_thread_is_raised(monkeypatch: pytest.MonkeyPatch)
 def test_a_crew_within_another_one_ends_with_it(
     ends: type[BaseException], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "processors", lambda: 2)
+    monkeypatch.setattr(module, "usable_processors", lambda: 2)
     begun: list[int] = []
 
     def inner(number: int) -> None:

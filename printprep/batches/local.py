@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from printprep.batches.memory import estimated_mib, machine_mib
 from printprep.batches.row import Told
 from printprep.batches.work import run_one
 from printprep.pool import WorkerDiedError, run_apart
+from printprep.processors import usable_processors
 
 if TYPE_CHECKING:
     from printprep.pipeline.job import Job
@@ -34,7 +34,7 @@ def run_locally(
     ended = run_apart(
         partial(_run_item, run),
         items,
-        workers or os.cpu_count() or 1,
+        workers or usable_processors(),
         timeout_s=timeout_s,
         cost=_cost_mib,
         budget=machine_mib() if memory_mib is None else memory_mib,

@@ -50,7 +50,7 @@ NUMPY_ERRORS = (
     AttributeError,
     struct.error,
     tokenize.TokenError,
-    NotImplementedError,
+    NotImplementedError,  # a compression of a zip that this Python does not know
 )
 TORCH_ERRORS = (*DAMAGE, IndexError, TypeError, AttributeError, AssertionError, struct.error)
 

@@ -36,17 +36,16 @@ def gap_mm(outside: Manifold, inside: Manifold, at_most_mm: float) -> float:
 
     at_most_mm : a greater distance is reported as this.  It is 0 where one breaks through.
     """
-    vertices, faces = arrays(outside)
-    nearest = faces
-    if len(faces) > MANY and not inside.is_empty():
-        nearest = _that_can_be_nearest(vertices, faces, inside, at_most_mm)
-    if len(nearest) > FEW_SHARE * len(faces):
+    nearest = None
+    if outside.num_tri() > MANY and not inside.is_empty():
+        nearest = _few_that_can_be_nearest(*arrays(outside), inside, at_most_mm)
+    if nearest is None:
         return float(_everything_beyond(outside).min_gap(inside, at_most_mm))
     if not (inside - outside).is_empty():
         return 0.0
     if not len(nearest):
         return at_most_mm
-    return float(_thin_tetrahedra(vertices[nearest]).min_gap(inside, at_most_mm))
+    return float(_thin_tetrahedra(nearest).min_gap(inside, at_most_mm))
 
 
 def _everything_beyond(outside: Manifold) -> Manifold:
@@ -59,17 +58,24 @@ def _everything_beyond(outside: Manifold) -> Manifold:
     return Manifold.cube(size).translate(corner) - outside
 
 
-def _that_can_be_nearest(vertices: Float, faces: Int, inside: Manifold, at_most_mm: float) -> Int:
-    """(k, 3) the faces (m, 3) with an area that may lie within a distance of the inside.
+def _few_that_can_be_nearest(
+    vertices: Float, faces: Int, inside: Manifold, at_most_mm: float
+) -> Float | None:
+    """(k, 3 corners, 3 xyz) mm, triangles that may lie within a distance of the inside.
 
-    vertices : (n, 3) mm.
+    vertices : (n, 3) mm;  faces : (m, 3).  None where they are not few.
     """
     distance, _ = tree_of(*arrays(inside)).nearest(vertices)
     a, b, c = (vertices[corner] for corner in faces.T)
     squares = [((p - q) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
     limit = at_most_mm**2 + np.maximum.reduce(squares) / 3
-    near: Int = faces[np.minimum.reduce([distance[corner] for corner in faces.T]) ** 2 <= limit]
-    some: Int = near[np.abs(area_normals(vertices[near])).max(axis=1, initial=0.0) > 0]
+    near = np.minimum.reduce([distance[corner] for corner in faces.T]) ** 2 <= limit
+    if int(near.sum()) > FEW_SHARE * len(faces):
+        return None
+    corners = vertices[faces[near]]
+    # What has no area lies on the edges of others
+    has_area = np.abs(area_normals(corners)).max(axis=1, initial=0.0) > 0
+    some: Float = corners[has_area]
     return some
 
 

@@ -14,7 +14,7 @@ from printprep.mesh.gap import gap_mm
 def _measured(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """All triangles of the outside are measured, or those that can be nearest."""
     monkeypatch.setattr(gap, "MANY", 0 if request.param == "some" else 10**9)
-    monkeypatch.setattr(gap, "FEW_SHARE", 0.999)
+    monkeypatch.setattr(gap, "FEW_SHARE", 1.0)
 
 
 def _box(low: float, high: float) -> Manifold:
@@ -52,6 +52,15 @@ def test_it_is_zero_where_one_breaks_through(apart_mm: float) -> None:
     assert gap_mm(_box(0, 20), inside, 5.0) == 0.0
 
 
+def test_where_most_can_be_nearest_all_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(corners: np.ndarray) -> Manifold:
+        raise AssertionError(f"{len(corners)} triangles are measured one by one")
+
+    monkeypatch.setattr(gap, "MANY", 0)
+    monkeypatch.setattr(gap, "_thin_tetrahedra", refuse)
+    assert gap_mm(_box(0, 20), _box(1.5, 18.5), 5.0) == pytest.approx(1.5, abs=2e-6)
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_both_ways_agree_on_random_solids(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(seed)
@@ -62,7 +71,6 @@ def test_both_ways_agree_on_random_solids(seed: int, monkeypatch: pytest.MonkeyP
     inside = inside.translate(rng.uniform(-0.9, 0.9, 3).tolist())
     for at_most_mm in (0.5, 1.5, 4.0):
         monkeypatch.setattr(gap, "MANY", 10**9)
-        monkeypatch.setattr(gap, "FEW_SHARE", 0.999)
         whole = gap_mm(outside, inside, at_most_mm)
         monkeypatch.setattr(gap, "MANY", 0)
         monkeypatch.setattr(gap, "FEW_SHARE", 1.0)
